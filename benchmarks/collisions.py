@@ -5,6 +5,7 @@ Jog, program, script and servo motions of four arms, with payloads within their 
 where it should be. Truth is read for scoring alone. The second part is motion without a contact, which nothing may stop.
 """
 
+from itertools import pairwise
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -48,6 +49,8 @@ FIRST_PEAK = 0.02  # [s]
 OVER = 1.2  # times the limit, from where the twin's force counts
 KEPT = 0.020  # from where it should be, from where the twin counts [m]
 TRIES, SPACED = 8, 100_003
+SPEED_EDGES = (0.02, 0.1, 0.25, 1.001)  # of the table's rows [m/s]
+STIFFNESS_EDGES = (1e3, 1e4, 1e5, 2.001e5)  # and of its columns [N/m]
 OFF = {"collision.on": False, "following.on": False}
 
 
@@ -72,7 +75,7 @@ class Course(NamedTuple):
     peak: float  # largest force in the first 20 ms [N]
     later: float  # and after them [N]
     kept: float  # the furthest that the tool was from where it should be [m]
-    stopped: str  # the part that the protective stop names; "" for none, "path" for a following error
+    stopped: str  # the part that the protective stop names; "" for none, "path" for a following error without one
     delay: float  # from the touch to the stop [s]
 
 
@@ -185,7 +188,7 @@ class Trial:
                 touched, shape = ticks, touching(device)
             for event in decision.events:
                 if event.kind in (Kind.COLLISION, Kind.PATH_LEFT) and not stopped:
-                    stopped = str(event.values["part"]) if event.kind is Kind.COLLISION else "path"
+                    stopped = str(event.values["part"]) or "path"
                     stopped_at = ticks
             if touched:
                 if (ticks - touched) * TICK <= FIRST_PEAK:
@@ -293,6 +296,7 @@ def measure(report: Report) -> None:
         ratio = [r.seen.later / max(r.twin.later, 1.0) for r in named]
         report.row("largest force after 20 ms, of the twin's, median", float(np.median(ratio)), "", n=len(named))
         report.row("first peak, of the twin's, median", float(np.median([r.seen.peak / max(r.twin.peak, 1.0) for r in named])))
+    _table(report, hard)
     for part in get_args(Part):
         some = [r for r in hard if r.strike.part == part]
         report.share(f"{part}: stopped", sum(bool(r.seen.stopped) for r in some), len(some))
@@ -300,6 +304,19 @@ def measure(report: Report) -> None:
     wrong = [r for r in hard if not r.seen.stopped] + [r for r in stopped if not _right(r)]
     for r in wrong[:40]:
         report.notes.append(f"{r.strike}: {r.seen}; without {r.twin}")
+
+
+def _table(report: Report, hard: list[Result]) -> None:
+    """Medians of delay and force by speed and stiffness; a cell without a hit is left out."""
+    for low, high in pairwise(SPEED_EDGES):
+        for soft, stiff in pairwise(STIFFNESS_EDGES):
+            some = [r for r in hard if low <= r.strike.speed < high and soft <= r.strike.stiffness < stiff and r.seen.stopped]
+            if some:
+                cell = f"{1e3 * low:.0f} to {1e3 * high:.0f} mm/s on {soft:g} to {stiff:g} N/m"
+                report.row(f"{cell}: touch to stop", 1e3 * float(np.median([r.seen.delay for r in some])), "ms", n=len(some))
+                peaks = [(max(r.seen.peak, r.seen.later), max(r.twin.peak, r.twin.later)) for r in some]
+                for name, k in (("largest force", 0), ("largest force without the stop", 1)):
+                    report.row(f"{cell}: {name}", float(np.median([each[k] for each in peaks])), "N", n=len(some))
 
 
 def _quiet(report: Report, base: int) -> None:
@@ -319,8 +336,20 @@ def _quiet(report: Report, base: int) -> None:
 
 
 def _right(r: Result) -> bool:
-    """The stop names the part that touched, which is the tool where that was there before the part that was to."""
-    return r.seen.stopped == ("tool" if r.seen.shape == "shape/tool" else r.strike.part)
+    """The stop names the part that touched, whichever was there first: a wrist is wider than what it hangs on."""
+    return r.seen.stopped == _touched(r)
+
+
+def _touched(r: Result) -> str:
+    """The part whose shape touched. At the elbow upper arm and forearm meet: either is the elbow where that was to touch."""
+    number = r.seen.shape.removeprefix("shape/")
+    if number == "tool":
+        return "tool"
+    arm = load_arm(r.strike.arm)
+    beyond = arm.shapes[int(number)].link - arm.chain.elbow
+    if beyond > 0:
+        return "wrist"
+    return "forearm" if beyond == 0 and r.strike.part != "elbow" else "elbow"
 
 
 if __name__ == "__main__":

@@ -209,7 +209,7 @@ class Supervisor:
             until, action = sequencer.until, "none"
             if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact, estimate.v_tcp):
                 robot.braking, action = True, until.then
-            events.append(told(contact, estimate.tick, action))
+            events.append(told(contact, estimate.tick, action, estimate.v_tcp))
         return looks
 
     def _obey(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:

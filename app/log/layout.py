@@ -47,6 +47,7 @@ STATE = (
     Field("lost_odds", 1, "log of the odds that the payload changed, NaN while nothing is compared"),
     Field("lost_share", 1, "of the payload that is gone then, below 0 what has come"),
     Field("step_odds", 1, "log of the odds that the flange sensor stepped, NaN while nothing is compared"),
+    Field("link_force", 1, "least force on a link that explains what the joints feel [N]"),
     *(Field(f"monitored_{name}", 1, f"{row.text} [{row.unit}], NaN while not checked") for name, row in PARAMETERS.items()),
     *(Field(f"limit_{name}", 1, f"limit of {row.text} [{row.unit}], NaN while not checked") for name, row in PARAMETERS.items()),
 )
@@ -63,13 +64,17 @@ TRUTH = (
     Field("touch_force", 3, "sum of all hands' forces, in W [N]"),
     Field("payload_mass", 1, "mass of what is attached [kg]"),
     Field("touched", 1, "1 while a hand or an object touches the arm or what it carries, else 0"),
+    Field("contact_tool", 1, "true force of hands and objects on tool and payload [N]"),
+    Field("contact_link", 1, "the largest of those on a link [N]"),
 )
 """/truth: what the physics knows and the controller does not."""
 
 PULL = ("felt", "lost_odds", "lost_share", "step_odds")
 """What pulls at the free arm, in /state."""
 
-LATER = frozenset({"touched", "monitored_motor_current", "limit_motor_current", *PULL})
+LATER = frozenset(
+    {"touched", "contact_tool", "contact_link", "link_force", "monitored_motor_current", "limit_motor_current", *PULL}
+)
 """What recordings lack that were made before it came; it is not a number in each tick of them."""
 
 CODES = ("mode", "safety", "phase", "program", "step", "valid")

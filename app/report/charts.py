@@ -63,7 +63,10 @@ def charts(gathered: Gathered, summary: Summary) -> list[tuple[str, str]]:
             "Speed of tool centre point and elbow, against 250 mm/s",
             _lines(end, speeds, "speed [mm/s]", marks, bar=1000 * SLOW),
         ),
-        ("Force at the flange, as the controller estimates it", _lines(end, [("force", lines["force"])], "force [N]", marks)),
+        (
+            "Force on the tool by the flange sensor, and the largest true force on the arm",
+            _lines(end, [("sensed", lines["force"]), ("true", lines["true"])], "force [N]", marks),
+        ),
         *([(PULL_CAPTION, _stacked(columns, summary.duration))] if columns else []),
         ("External torque of the joints, size", _lines(end, torques, "torque [N·m]", marks)),
     ]

@@ -208,14 +208,17 @@ class Gathered:
         length = len(log)
         self.log = log
         self.end = 0.0  # [s]
-        self.tcp_speed, self.elbow_speed, self.joint_speed, self.force_peak = PeakSeen(), PeakSeen(), PeakSeen(), PeakSeen()
-        self.force_held = HeldSeen()
+        self.tcp_speed, self.elbow_speed, self.joint_speed = PeakSeen(), PeakSeen(), PeakSeen()
+        self.force_peak, self.force_held = PeakSeen(), HeldSeen()  # true, where the recording has it
+        self.on_tool, self.on_link = PeakSeen(), PeakSeen()  # true
+        self.told_tool, self.told_link = PeakSeen(), PeakSeen()  # as the controller estimates it
+        self.truth_known = False  # whether the true forces are recorded
         self.modes, self.phases = SpansSeen(WORDS["mode"]), SpansSeen(WORDS["phase"])
         self.worst: dict[str, Nearest] = {}
         self.checked = dict.fromkeys(PARAMETERS, 0)  # ticks in which each is
         self.touched: dict[float, list[float]] = {1.0: [], -1.0: []}  # times at which a touch begins, and ends
         self.configured, self.payload = 0.0, 0.0  # at the end [kg]
-        self.lines = {name: LineSeen(length) for name in ("tcp", "elbow", "force")}  # speeds [mm/s], force [N]
+        self.lines = {name: LineSeen(length) for name in ("tcp", "elbow", "force", "true")}  # speeds [mm/s], forces [N]
         self.torques = {joint: LineSeen(length) for joint in log.arm.chain.joints}  # external, sizes [N·m]
         self.shares = {name: LineSeen(length) for name in PARAMETERS}
         self.pulls = PullsSeen(length)
@@ -226,12 +229,19 @@ class Gathered:
     def _see(self, part: Log) -> None:
         state, t = part.state, part.t
         force = np.linalg.norm(state["F_user"][:, :3], axis=1)
+        tool, link = part.truth["contact_tool"], part.truth["contact_link"]
+        self.truth_known = self.truth_known or bool(np.isfinite(tool).any())
+        true = np.fmax(tool, link) if self.truth_known else force
+        self.on_tool.see(tool, t)
+        self.on_link.see(link, t)
+        self.told_tool.see(force, t)
+        self.told_link.see(state["link_force"], t)
         self.end = float(t[-1])
         self.tcp_speed.see(state["v_tcp"], t)
         self.elbow_speed.see(state["v_elbow"], t)
         self.joint_speed.see(np.abs(state["qd"]).max(axis=1, initial=0.0), t)
-        self.force_peak.see(force, t)
-        self.force_held.see(force, t)
+        self.force_peak.see(true, t)
+        self.force_held.see(true, t)
         self.modes.see(state["mode"], t)
         self.phases.see(state["phase"], t)
         self.configured, self.payload = float(state["configured_mass"][-1]), float(part.truth["payload_mass"][-1])
@@ -239,6 +249,7 @@ class Gathered:
         self.lines["tcp"].see(1000 * state["v_tcp"], t)
         self.lines["elbow"].see(1000 * state["v_elbow"], t)
         self.lines["force"].see(force, t)
+        self.lines["true"].see(true, t)
         torque = np.abs(state["tau_ext"])
         for i, joint in enumerate(part.arm.chain.joints):
             self.torques[joint].see(torque[:, i], t)

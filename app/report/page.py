@@ -77,13 +77,13 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
                 ("speed of the tool centre point", *_peak(summary.tcp_speed, 1000), "mm/s", *_against(summary.tcp_speed)),
                 ("speed of the elbow", *_peak(summary.elbow_speed, 1000), "mm/s", *_against(summary.elbow_speed)),
                 ("speed of a joint", *_peak(summary.joint_speed), "rad/s", f"{summary.joint_speed.t:.3f}", ""),
-                ("force at the flange", *_peak(summary.force_peak), "N", f"{summary.force_peak.t:.3f}", "transient limits"),
-                ("force held for 0.5 s", *_peak(summary.force_held), "N", f"{summary.force_held.t:.3f}", "quasi-static limits"),
+                *_forces(summary),
             ],
         ),
-        "<h2>Force at the flange against body regions</h2>",
-        "<p>Estimated force, that of hands included. Where no transient contact is allowed, the peak counts as quasi-static. "
+        "<h2>Force against body regions</h2>",
+        f"<p>{_which(summary)} Where no transient contact is allowed, the peak counts as quasi-static. "
         "The limits are data with a source each, in assets/limits/body-regions.yaml.</p>",
+        *(f'<p class="note">Told less than there was: {escape(each)}.</p>' for each in summary.clips),
         table(
             ("body region", "quasi-static [N]", "transient [N]", "of limit", "within", "source"),
             [
@@ -101,6 +101,29 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
         f'<p class="note">{escape(NOT_A_VALIDATION)}</p>',
     ]
     return document(title, parts)
+
+
+def _which(summary: Summary) -> str:
+    """Which force is held against the limits."""
+    if summary.truth_known:
+        return "The true force of hands and objects, the larger of those on the tool and on a link, 500 times a second."
+    return "The force that the flange sensor tells, for this recording has no true one: it ends at its range and knows no links."
+
+
+def _forces(summary: Summary) -> list[tuple[str, ...]]:
+    """Rows of the forces: true beside told."""
+    true = [
+        ("force on the tool, true", summary.on_tool, ""),
+        ("force on a link, true", summary.on_link, ""),
+    ]
+    rows = [
+        ("largest force", summary.force_peak, "transient limits"),
+        ("largest force for 0.5 s", summary.force_held, "quasi-static limits"),
+        *(true if summary.truth_known else []),
+        ("force on the tool, by the flange sensor", summary.told_tool, ""),
+        ("force on a link, at least, by the joints", summary.told_link, ""),
+    ]
+    return [(name, *_peak(peak), "N", f"{peak.t:.3f}", against) for name, peak, against in rows]
 
 
 def _verdict(summary: Summary) -> str:

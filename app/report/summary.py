@@ -29,6 +29,9 @@ AT_REST = 0.01
 RESTING = TICK_RATE // 10
 """It stands when that lasts for so many ticks, 0.1 s."""
 
+LEAST_TOLD = 10.0
+"""A smaller force on a link is not told by the joints [N]."""
+
 STOPS = frozenset({Effect.LEAVE_TO_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP})
 NOT_A_VALIDATION = (
     "This is the report of a simulation. It is not a validation of a robot cell: forces and pressures of a real contact have to "
@@ -57,7 +60,7 @@ class StopFigures(msgspec.Struct, frozen=True):
 
 
 class Force(msgspec.Struct, frozen=True):
-    """The force at the flange against what a body region bears."""
+    """The force on the arm against what a body region bears."""
 
     region: str
     quasi_static: float  # limit [N]
@@ -97,8 +100,14 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     tcp_speed: Peak
     elbow_speed: Peak
     joint_speed: Peak
-    force_peak: Peak  # of F_user's force [N]
+    force_peak: Peak  # true, the larger of those on the tool and on a link [N]
     force_held: Peak  # the largest that lasted 0.5 s [N]
+    on_tool: Peak  # true [N]
+    on_link: Peak  # true, the largest on any link [N]
+    told_tool: Peak  # as the flange sensor tells it [N]
+    told_link: Peak  # the least that the joints tell [N]
+    truth_known: bool  # the true forces are recorded; else `force_peak` and `force_held` are those that the flange sensor tells
+    clips: list[str]  # what tells less force than there was, in words
     forces: list[Force]
     expectations: list[Expected]
 
@@ -136,12 +145,30 @@ def summarise(gathered: Gathered, verdicts: Sequence[Verdict] = ()) -> Summary:
         joint_speed=gathered.joint_speed.found,
         force_peak=peak,
         force_held=held,
+        on_tool=gathered.on_tool.found,
+        on_link=gathered.on_link.found,
+        told_tool=gathered.told_tool.found,
+        told_link=gathered.told_link.found,
+        truth_known=gathered.truth_known,
+        clips=_clips(gathered),
         forces=[
             Force(each.region, each.quasi_static, each.transient, *_within(peak.value, held.value, each), each.source)
             for each in table.regions
         ],
         expectations=[Expected(verdict.passed, verdict.expected, verdict.seen) for verdict in verdicts],
     )
+
+
+def _clips(gathered: Gathered) -> list[str]:
+    """What told less force than there was."""
+    sensor, found = gathered.log.arm.sensors.force_torque, []
+    tool, link = gathered.on_tool.found.value, gathered.on_link.found.value
+    told, by_joints = gathered.told_tool.found.value, gathered.told_link.found.value
+    if sensor is not None and tool > sensor.force.range:
+        found.append(f"the flange sensor ends at {sensor.force.range:g} N an axis: {tool:.0f} N true, {told:.0f} N sensed")
+    if link > max(by_joints, LEAST_TOLD):
+        found.append(f"the flange sensor feels nothing of a link: {link:.0f} N true, at least {by_joints:.0f} N by the joints")
+    return found
 
 
 def _since_onset(gathered: Gathered, event: EventLine) -> float | None:

@@ -75,7 +75,7 @@ class Docks:
         with self._lower.add_tab("Events") as self._events_dock:
             self.journal = Journal(gui)
         with self._lower.add_tab("Contacts") as self._contacts_dock:
-            self.contacts = Contacts(server, arm)
+            self.contacts = Contacts(server, loop, arm)
         with self._lower.add_tab("Plots") as self.plots_dock:
             self.plots = Plots(gui, loop, arm)
         self.journal.look_at = self.plots.look_at

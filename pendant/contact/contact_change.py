@@ -48,8 +48,8 @@ TOLD = {
 }
 
 
-def told(contact: Contact, tick: int, action: str) -> Event:
-    """The event of a contact, with the `action` that a program takes (CD-16)."""
+def told(contact: Contact, tick: int, action: str, speed: float) -> Event:
+    """The event of a contact, with the `action` that a program takes, and the tool's `speed` at the decision [m/s] (CD-16)."""
     (fx, fy, fz), (ax, ay, az), (x, y, z) = contact.force, contact.acceleration, contact.pose.p_BT
     return Event(
         TOLD[contact.change],
@@ -68,6 +68,7 @@ def told(contact: Contact, tick: int, action: str) -> Event:
             "az": az,
             "ratio": contact.ratio,
             "steps": contact.steps,
+            "speed": 1e3 * speed,
             "x": x,
             "y": y,
             "z": z,

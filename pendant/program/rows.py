@@ -5,7 +5,7 @@ from pendant.events.event_row import WALL, Effect, EventRow, Severity, denied, i
 
 
 def _touched(headline: str) -> EventRow:
-    """A change in contact: force on the object in B, pose of the tool centre point at the first suspicious sample."""
+    """A change in contact: force on the object in B, the tool's speed [mm/s], its pose at the first suspicious sample."""
     keys = (
         "part",
         "source",
@@ -20,6 +20,7 @@ def _touched(headline: str) -> EventRow:
         "az",
         "ratio",
         "steps",
+        "speed",
         "x",
         "y",
         "z",

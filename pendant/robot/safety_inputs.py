@@ -30,7 +30,7 @@ class SafetyInputs:
         """
         self._robot, self._joints = robot, joints
         self._reduced = Reduced()
-        self._collisions = Collisions(elbow)
+        self._collisions = Collisions(joints, elbow)
         self._safeguard = False  # it is open
         self._blind = 0  # ticks for which some motor angle has been out
 
@@ -81,9 +81,14 @@ class SafetyInputs:
             hit = self._collisions.step(estimate, settings.collision, moves=robot.move is not None and not asked)
         if robot.mode is _STOP:
             return
-        stop = hit or left_path(estimate, settings.following, self._joints) or self._too_fast(estimate, settings)
+        stop = hit or self._left_path(estimate, settings) or self._too_fast(estimate, settings)
         if stop is not None:
             robot.happen(stop, settings, events)
+
+    def _left_path(self, estimate: Estimate, settings: Settings) -> Event | None:
+        """The event of an arm that does not follow, with what holds it."""
+        collisions = self._collisions
+        return left_path(estimate, settings.following, self._joints, lambda: collisions.holding(estimate, settings.collision))
 
     def _too_fast(self, estimate: Estimate, settings: Settings) -> Event | None:
         """The event of an arm that is too fast for REDUCED."""

@@ -1,9 +1,11 @@
 """An arm that hits something, or is pushed with more than a robot may bear, is stopped (RL-3)."""
 
+from collections import deque
 from math import hypot, inf
 
-from pendant.events.event import Event, Kind, Values
+from pendant.events.event import Event, Kind, Values, posture_text
 from pendant.safety.settings import CollisionSettings
+from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 
 MORE = 20.0
@@ -13,6 +15,13 @@ it as much."""
 MOST = 9999.0
 """That is told of a force, be it larger or no number [N]."""
 
+HELD_BY = 0.5
+"""Share of the setting for a moving arm from which a force tells what holds an arm that has left its path. A payload of 2 kg that
+nobody told of stays below."""
+
+BEFORE = ticks(0.05)
+"""Ticks in which the contact itself brakes the arm before its force tells: the speed at the contact is the largest in them."""
+
 
 class Collisions:
     """Compares the forces on tool and links with what may be there.
@@ -21,18 +30,21 @@ class Collisions:
     or to move is allowed, with a little more; as it falls, so does what is allowed, down to the setting.
 
     Args:
+        joints: their names, base to flange.
         elbow: index of the joint whose origin is the elbow.
     """
 
-    __slots__ = ("_allowed", "_elbow")
+    __slots__ = ("_allowed", "_elbow", "_joints", "_speeds")
 
-    def __init__(self, elbow: int) -> None:
-        self._elbow = elbow
+    def __init__(self, joints: tuple[str, ...], elbow: int) -> None:
+        self._joints, self._elbow = joints, elbow
         self._allowed = [inf, inf]  # of tool and link [N]
+        self._speeds: deque[tuple[float, float]] = deque(maxlen=BEFORE)  # of tool and elbow, the last ones [m/s]
 
     def rest(self) -> None:
         """Nothing holds or moves the arm by itself: it is free, or stopped."""
         self._allowed[:] = inf, inf
+        self._speeds.clear()
 
     def step(self, estimate: Estimate, settings: CollisionSettings, *, moves: bool) -> Event | None:
         """The event of an arm that meets more than it may, None where it does not. What is not a number is more.
@@ -42,23 +54,38 @@ class Collisions:
             settings: the limits.
             moves: the arm follows a motion, and nobody asked for a contact.
         """
+        self._speeds.append((estimate.v_tcp, estimate.v_elbow))
         if not settings.on:
             return None
-        link = estimate.link_force
-        x, y, z = estimate.F_user[:3].tolist() if estimate.wrench_valid else (0.0, 0.0, 0.0)
-        # Beyond the sensor's range the joints feel the rest of a force on the tool.
-        tool, on_link = hypot(x, y, z), link.force
-        if estimate.clipped:
-            tool, on_link = tool + on_link, 0.0
         least = settings.force if moves else settings.clamping
-        for k, force in enumerate((tool, on_link)):
+        for k, force in enumerate(_forces(estimate)):
             limit = self._allowed[k] = max(least, min(self._allowed[k], force + MORE))
             if not force <= limit < inf:
-                part = "tool" if k == 0 else self._part(link.joint, sensed=estimate.wrench_valid)
-                told = force if force < MOST else MOST
-                values: Values = {"part": part, "force": told, "limit": limit, "speed": 1e3 * estimate.v_tcp}
-                return Event(Kind.COLLISION, estimate.tick, values)
+                joint = self._joints[-1 if k == 0 else estimate.link_force.joint]
+                return Event(Kind.COLLISION, estimate.tick, {"joint": joint, "limit": limit, **self._met(estimate, k, force)})
         return None
+
+    def holding(self, estimate: Estimate, settings: CollisionSettings) -> Values:
+        """What holds an arm that has left its path, as the values of its event; the part is "" where no force tells."""
+        forces = _forces(estimate)
+        k = 0 if forces[0] >= forces[1] else 1
+        met = self._met(estimate, k, forces[k])
+        return met if forces[k] >= HELD_BY * settings.force else {**met, "part": ""}
+
+    def _met(self, estimate: Estimate, k: int, force: float) -> Values:
+        """What the arm meets with its tool, 0, or a link, 1: `pendant.safety.rows.MET`."""
+        part = "tool" if k == 0 else self._part(estimate.link_force.joint, sensed=estimate.wrench_valid)
+        tool, elbow = (max(each) for each in zip(*self._speeds, (estimate.v_tcp, estimate.v_elbow), strict=True))
+        x, y, z = estimate.tcp.tolist()[:3]
+        return {
+            "part": part,
+            "force": force if force < MOST else MOST,
+            "speed": 1e3 * (elbow if part in OF_THE_ELBOW else tool),
+            "x": x,
+            "y": y,
+            "z": z,
+            "posture": posture_text(estimate.q.tolist()),
+        }
 
     def _part(self, joint: int, *, sensed: bool) -> str:
         """Name of the link that this joint, the last that feels the force, moves."""
@@ -67,3 +94,14 @@ class Collisions:
         if joint == self._elbow:
             return "forearm"
         return "wrist" if sensed else "wrist or tool"
+
+
+OF_THE_ELBOW = ("elbow", "forearm")
+"""Parts whose speed is told as that of the elbow."""
+
+
+def _forces(estimate: Estimate) -> tuple[float, float]:
+    """On the tool and on a link [N]. Beyond the sensor's range the joints feel the rest of a force on the tool."""
+    x, y, z = estimate.F_user[:3].tolist() if estimate.wrench_valid else (0.0, 0.0, 0.0)
+    tool, on_link = hypot(x, y, z), estimate.link_force.force
+    return (tool + on_link, 0.0) if estimate.clipped else (tool, on_link)

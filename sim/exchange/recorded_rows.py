@@ -11,8 +11,11 @@ from pendant.tick.estimate import Estimate
 from sim.compiled.kernel import kernel
 from sim.plant.joint_state import SIGN_SPEED
 from sim.plant.true_arm import Plant
+from sim.plant.true_forces import true_forces
 
 Array = NDArray[np.float64]
+
+FLANGE_POSE = 7  # numbers
 
 
 class RecordedJoints(NamedTuple):
@@ -51,26 +54,29 @@ class RecordedPlace(NamedTuple):
 def fill_rows(
     e: Estimate, plant: Plant, *, gain: float, configured: float, pull: PullCauses | None, known: Array, truth: Array, k: int
 ) -> None:
-    """Write an estimate into row k of `known` (m, 9 n + 32 or more), the true state into row k of `truth` (m, 6 n + 12).
+    """Write an estimate into row k of `known` (m, 9 n + 33 or more), the true state into row k of `truth` (m, 6 n + 14).
 
     Known, in this order: q, qd, qdd, theta, theta_d, tau_m, tau_J, tau_ext, friction (n each); w_sensor, F_user (6 each); a_F,
     p_BF (3 each); v_F (6); speeds of tcp and elbow, `gain` on the user's force, mass `configured`; of the `pull`
-    who is felt, odds and share of a lost payload, odds of a step of the sensor: not a number where they are not known.
+    who is felt, odds and share of a lost payload, odds of a step of the sensor: not a number where they are not known; the force
+    on a link that the joints tell.
 
     Truth: q, qd, theta, tau_J, friction of both sides, temperature (n each); pose of the flange in W (7); sum of the hands'
-    forces in W (3); mass of what is attached; 1 while anything is touched.
+    forces in W (3); mass of what is attached; 1 while anything is touched; forces on the tool and on a link.
     """
     joints = (e.q, e.qd, e.qdd, e.theta, e.theta_d, e.tau_m, e.tau_J, e.tau_ext, e.friction)
     flange = (e.w_sensor, e.F_user, e.v_F, e.a_F, e.p_BF)
-    _known(joints, flange, (e.v_tcp, e.v_elbow, gain, configured, *_numbers(pull)), known[k])
+    _known(joints, flange, (e.v_tcp, e.v_elbow, gain, configured, *_numbers(pull), e.link_force.force), known[k])
     place = (*plant.frames, plant.flange_body, plant.payload.load.mass)
     _truth(plant.record, plant.friction.record, place, truth[k])
     row = truth[k]
-    row[-1] = plant.touched
+    at = 6 * e.q.size + FLANGE_POSE
+    row[at + 4] = plant.touched
+    row[at + 5], row[at + 6] = true_forces(plant)
     for _, _, (x, y, z), _ in plant.hands.touched:
-        row[-5] += x
-        row[-4] += y
-        row[-3] += z
+        row[at] += x
+        row[at + 1] += y
+        row[at + 2] += z
 
 
 def _numbers(pull: PullCauses | None) -> tuple[float, float, float, float]:
@@ -100,7 +106,7 @@ def _known(joints, flange, numbers, out) -> None:
         out[at + i], out[at + 6 + i], out[at + 18 + i] = flange.w_sensor[i], flange.F_user[i], flange.v_F[i]
     for i in range(3):
         out[at + 12 + i], out[at + 15 + i] = flange.a_F[i], flange.p_BF[i]
-    for i in range(8):
+    for i in range(len(numbers)):
         out[at + 24 + i] = numbers[i]
 
 

@@ -83,6 +83,15 @@ class Plant:
         """Names of the parts that can be touched."""
         return tuple(self._parts)
 
+    @property
+    def link_bodies(self) -> tuple[int, ...]:
+        """MuJoCo's numbers of foot, links and flange."""
+        return tuple(self._links.tolist())
+
+    def body_of(self, part: str) -> int:
+        """MuJoCo's number of a part that can be touched."""
+        return self._parts[part]
+
     def _place(self, posture: Array) -> None:
         """Put the arm at rest in `posture` (n,), the springs loaded by gravity, the friction relaxed."""
         set_contact_stiffness(self.model, self.scenario.world)

@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 from app.robot_interface.client_ports.bare_commands import LONGEST, TextCommands
 from app.robot_interface.client_ports.primary_messages import (
+    OURS,
+    Code,
     error_message,
     exception_message,
     key_message,
@@ -41,6 +43,9 @@ KEYS = {
 
 SECONDARY_EXCEPTION = "SECONDARY_PROGRAM_EXCEPTION_XXX"
 """What ends a secondary program, which the one beside goes on after."""
+
+CODES = {Kind.COLLISION: 157, Kind.PATH_LEFT: 153}
+"""Codes of a UR's protective stops, whose argument is the joint: a collision, and a position that deviates from the path."""
 
 LEVELS = {Severity.NOTICE: 1, Severity.WARNING: 2, Severity.STOP: 3}
 
@@ -144,7 +149,12 @@ class PrimarySession(StreamSession):
             self.outbox.send(key_message(self.cabinet.clock, KEYS[event.kind], str(event.values["name"])))
         level = LEVELS.get(TABLE[event.kind].severity)
         if level is not None:
-            self.outbox.send(error_message(self.cabinet.clock, level, " ".join(render(event)).strip()))
+            self.outbox.send(error_message(self.cabinet.clock, level, " ".join(render(event)).strip(), self._code(event)))
+
+    def _code(self, event: Event) -> Code:
+        """By which a UR's clients know what stopped it."""
+        number = CODES.get(event.kind)
+        return OURS if number is None else Code(number, self.cabinet.joints.index(str(event.values["joint"])))
 
     def script(self, told: Told) -> None:
         """Messages of scripts: keys, texts, popups, and what went wrong with line and column."""

@@ -2,6 +2,7 @@
 
 import struct
 from enum import IntEnum
+from typing import NamedTuple
 from unicodedata import normalize
 
 from app.robot_interface.controller.robot_words import VERSION, SafetyMode
@@ -48,9 +49,19 @@ def key_message(clock: float, title: str, text: str) -> bytes:
     return _message(clock, MessageType.KEY, struct.pack(">iiB", 0, 0, len(name)) + name + _ascii(text))
 
 
-def error_message(clock: float, level: int, text: str) -> bytes:
+class Code(NamedTuple):
+    """Of an error, as C157A2 is code 157 with argument 2; clients print it so."""
+
+    number: int = 0  # 0: ours, which a UR's list does not have
+    argument: int = 0
+
+
+OURS = Code()
+
+
+def error_message(clock: float, level: int, text: str, code: Code = OURS) -> bytes:
     """An error for people; `level` 1 is a note, 2 a warning, 3 a stop."""
-    return _message(clock, MessageType.ERROR, struct.pack(">iiiII", 0, 0, level, 0, 0) + _ascii(text))
+    return _message(clock, MessageType.ERROR, struct.pack(">iiiII", *code, level, 0, 0) + _ascii(text))
 
 
 def safety_message(clock: float, mode: SafetyMode) -> bytes:

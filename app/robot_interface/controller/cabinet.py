@@ -61,7 +61,7 @@ class Cabinet:
         between: Between = at_once,
         remote: bool = True,
     ) -> None:
-        self._simulation, self._joints, self._high, self._between = simulation, joints, high, between
+        self._simulation, self.joints, self._high, self._between = simulation, joints, high, between
         self.programs = programs
         self.state = ControllerState(remote=remote)
         self.record = FieldRecord()
@@ -234,7 +234,7 @@ class Cabinet:
             acts, self._acts = self._acts, []
         for act in acts:
             act.begun.cancel()
-        self._timeline = Timeline([], self._joints)
+        self._timeline = Timeline([], self.joints)
         self.state = ControllerState(remote=self.state.remote, operational=self.state.operational)
         self._settled = self._static = False
         self._seen = None

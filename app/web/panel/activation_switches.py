@@ -7,7 +7,7 @@ import viser
 
 from app.web.access.guard import Guard
 from app.web.running import Running
-from app.web.widgets.html import enable
+from app.web.widgets.html import bring, enable
 from pendant.all_settings import Settings, value_of
 from pendant.inputs import Button
 from pendant.signals.enabling_device import Grip
@@ -75,14 +75,14 @@ class ActivationSwitches:
         if settings is not self._settings:
             self._settings = settings
             for name, control in self.switches.items():
-                changed.append(_bring(control, bool(value_of(settings, name))))
+                changed.append(bring(control, bool(value_of(settings, name))))
         return any(changed)
 
     def let_go(self, client: int) -> None:
         """Release the enabling device, if it is held for `client`."""
         if client == self._holder:
             self._take(client, Grip.RELEASED)
-            _bring(self.grip, Grip.RELEASED.value)
+            bring(self.grip, Grip.RELEASED.value)
 
     def _take(self, client: int, grip: Grip) -> None:
         wanted = BUTTONS.get(grip)
@@ -98,11 +98,3 @@ class ActivationSwitches:
                 self._loop.desk.set({name: control.value})
 
         return update
-
-
-def _bring(control: Any, value: bool | str) -> bool:
-    """Let a control say `value`; True if that changed anything."""
-    if control.value == value:
-        return False
-    control.value = value
-    return True

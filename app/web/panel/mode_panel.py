@@ -12,6 +12,7 @@ from app.web.panel.state_words import (
     ASKED,
     FIGURES,
     LEAVING_PERIODS,
+    MOVES,
     PERIOD_COLOURS,
     PERIOD_WORDS,
     SAFETY_WORDS,
@@ -22,6 +23,7 @@ from app.web.panel.state_words import (
 from app.web.panel.way_back import WayBack
 from app.web.running import Running
 from app.web.scene.arm_marks import ArmMarks
+from app.web.scene.hit_mark import HitMark
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Bar, Colour
@@ -31,7 +33,7 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from pendant.tick.limit_engine import Monitored
-from pendant.tick.modes import TICK_RATE, Mode, Phase
+from pendant.tick.modes import TICK_RATE, Law, Mode, Phase, Safety
 from pendant.walls.containment import TETHER
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
@@ -72,6 +74,7 @@ class Panel:
         self.note = Html(gui, svg.note(*HINTS[Mode.TEACH][:3]))
         self.back = WayBack(server, arm)
         self.marks = ArmMarks(server, arm)
+        self.hit = HitMark(server, arm)
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
         self.speed = gui.add_slider(
             "Speed [%]", min=0, max=100, step=5, initial_value=100, hint="Of programs and of jogging, at once"
@@ -107,14 +110,12 @@ class Panel:
         word, colour = ("Clock paused", Colour.AMBER) if self._loop.paused else _state(decision)
         bars = decision.monitored
         changed = [
-            self.light.show(
-                svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour, pace=pace(self._loop))
-            ),
+            self.light.show(svg.light(_name(decision), word, SAFETY_WORDS[decision.safety], colour, pace=pace(self._loop))),
             self.rings.show(svg.windows([self._window(p.name, p.ticks, p.total, colour) for p in decision.periods])),
             self.note.show(svg.note(self.said.headline, self.said.text, self.said.colour, self.said.reasons)),
             self.back.show(snapshot, fresh),
             self.marks.light(rgb(colour)),
-            show_reasons(self.marks, self.said, self._remembered, snapshot),
+            show_reasons(self.said, self._remembered, snapshot, marks=self.marks, hit=self.hit),
             self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot), FIGURES)),
             enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
             enable(self.free_drive, True),
@@ -204,12 +205,20 @@ class Panel:
             desk.command(Command.TEACH if self.mode.value == "TEACH" else Command.NORMAL)
 
 
+def _name(decision: Decision) -> str:
+    """What stands in the mode light in large letters: the mode, of a stop what kind it is."""
+    stop = decision.mode is Mode.STOP and decision.safety > Safety.REDUCED
+    return SAFETY_WORDS[decision.safety].upper() if stop else decision.mode.replace("_", "-")
+
+
 def _state(decision: Decision) -> tuple[str, Colour]:
     """The mode light's word and colour."""
     if any(p.name in LEAVING_PERIODS and p.ticks < ABOUT_TO_END * TICK_RATE for p in decision.periods):
         return "About to end", Colour.AMBER
     if decision.mode is Mode.RUN and decision.program is ProgramState.PAUSED:
         return "Program paused", Colour.AMBER
+    if decision.mode in (Mode.NORMAL, Mode.TEACH) and decision.law is Law.FOLLOW:
+        return MOVES
     return ASKED.get(decision.phase, WORDS[decision.mode])
 
 

@@ -15,6 +15,9 @@ WORDS = {
     Mode.FREE_DRIVE: ("Guide it by hand", Colour.BLUE),
     Mode.STOP: ("Stopped", Colour.RED),
 }
+MOVES = ("The arm moves", Colour.GREEN)
+"""Outside of programs: it is jogged, or the payload wizard turns it."""
+
 ASKED = {
     Phase.ACTIVATION: ("Keep holding", Colour.BLUE),
     Phase.DELAY: ("Let go and wait", Colour.BLUE),
@@ -60,7 +63,7 @@ PERIOD_WORDS = {
     "sequence": "Checking",
     "free-drive": "Move it within",
     "restart": "Ends in",
-    "cool-down": "Ready again in",
+    "cool-down": "Free-drive again in",
     "safety": "Recovering",
 }
 """What a running period is called beside its countdown."""

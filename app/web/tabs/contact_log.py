@@ -1,4 +1,4 @@
-"""The contact log: changes in contact, newest first, one of them shown in the picture, all of them as a file."""
+"""The contact log: changes in contact and hits, newest first, one of them shown in the picture, all of them as a file."""
 
 import csv
 import io
@@ -8,11 +8,14 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from app.web.running import Running
 from app.web.scene.ghost import Ghost
+from app.web.scene.hit_mark import where
 from app.web.tabs.plots import MARKED
 from app.web.widgets import svg
-from app.web.widgets.html import Html
-from pendant.events.event import Event, posture_of
+from app.web.widgets.html import Html, bring
+from pendant.all_settings import Settings
+from pendant.events.event import Event, Kind, posture_of
 from pendant.tick.modes import TICK, TICK_RATE
 from sim.arm.arm_file import Arm
 from sim.arm.frames import matrix_from_quaternion
@@ -36,6 +39,11 @@ FAINTER = 6
 BALL = 0.02
 """Radius of the mark where it was [m]."""
 
+HITS = {Kind.COLLISION: "collision", Kind.PATH_LEFT: "held"}
+"""Protective stops of an arm that met something, and what the log calls them."""
+
+OFF = "Off: changes in contact are neither looked for nor listed. Collisions are."
+NOT_STOPPED = "The stop at a collision is off (Settings, collision)."
 RED, BLUE = (201, 42, 42), (28, 126, 214)
 COLUMNS = (
     "number",
@@ -45,6 +53,7 @@ COLUMNS = (
     "source",
     "rule",
     "force",
+    "speed",
     "fx",
     "fy",
     "fz",
@@ -66,12 +75,22 @@ SHORTEST, LONGEST = 0.05, 0.25
 class Contacts:
     """The tab with the contact log, and the mark of one contact in the picture."""
 
-    def __init__(self, server: viser.ViserServer, arm: Arm) -> None:
+    def __init__(self, server: viser.ViserServer, loop: Running, arm: Arm) -> None:
+        self._loop, self._arm = loop, arm
+        self._settings: Settings | None = None
         self._log: deque[tuple[int, Event]] = deque(maxlen=LENGTH)
         self._count = 0
         gui = server.gui
+        self.detects = gui.add_checkbox("Detection", loop.settings.contact.on, hint="Of changes in contact")
+        self.note = Html(gui)
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Mark", choices(0))
         self.table = Html(gui, svg.contacts(()))
+
+        @self.detects.on_update
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client_id is not None:  # a person, and not the page bringing itself up to date
+                loop.desk.set({"contact.on": self.detects.value})
+
         self.export = gui.add_button("Export CSV", color="gray", disabled=True)
         self.force = _arrow(server, "/contact/force", RED)
         self.acceleration = _arrow(server, "/contact/acceleration", BLUE)
@@ -90,7 +109,7 @@ class Contacts:
 
     def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
         """Add contacts, and mark the chosen one; True if anything changed."""
-        found = [event for event in fresh if event.kind.value.startswith(MARKED)]
+        found = [event for event in fresh if event.kind.value.startswith(MARKED) or (event.kind in HITS and event.values["part"])]
         for event in found:
             self._count += 1
             self._log.append((self._count, event))
@@ -98,26 +117,39 @@ class Contacts:
             self.table.show(svg.contacts(_row(number, event) for number, event in list(reversed(self._log))[:SHOWN]))
             self.choice.options = choices(self._count)
             self.export.disabled = False
-        return self._mark(snapshot) or bool(found)
+        return any([self._mark(snapshot), self._say(), bool(found)])
+
+    def _say(self) -> bool:
+        """Say what is looked for; True if that has changed."""
+        settings = self._loop.settings
+        if settings is self._settings:
+            return False
+        self._settings = settings
+        lines = [*([] if settings.contact.on else [OFF]), *([] if settings.collision.on else [NOT_STOPPED])]
+        return any([bring(self.detects, settings.contact.on), self.note.show("".join(map(svg.fine_print, lines)))])
 
     def file(self) -> bytes:
-        """The log as CSV: SI units, force and pose in B, the delay in milliseconds, the joint angles at its beginning."""
+        """The log as CSV: SI units, force and pose in B, the delay in milliseconds, the speed in mm/s, the joint angles at its
+        beginning. What is not known of an event is left out.
+        """
         text = io.StringIO()
         writer = csv.writer(text)
         writer.writerow(COLUMNS)
         for number, event in self._log:
             values = event.values | {"number": number, "t": round(event.tick * TICK, 3), "kind": event.kind.value}
-            values["delay_ms"] = round(1000.0 * float(values["steps"]) * TICK)
-            writer.writerow([values[name] for name in COLUMNS])
+            if "steps" in values:
+                values["delay_ms"] = round(1000.0 * float(values["steps"]) * TICK)
+            writer.writerow([values.get(name, "") for name in COLUMNS])
         return text.getvalue().encode()
 
     def _mark(self, snapshot: Snapshot) -> bool:
         if not self._log:
             return False
         wanted = self.choice.value
-        number, event = next((entry for entry in self._log if f"{entry[0]}" == wanted), self._log[-1])
+        number, event = next((entry for entry in self._log if name(entry[0]) == wanted), self._log[-1])
         age = snapshot.tick - event.tick
-        past = wanted == NEWEST and not 0 <= age < FADE  # also of another beginning
+        hit = event.kind in HITS  # which has a mark of its own while the arm is stopped
+        past = wanted == NEWEST and (hit or not 0 <= age < FADE)  # also of another beginning
         if past:
             return any([self._clear(), self.ghost.show(None, snapshot)])
         faded = age * FAINTER // FADE if wanted == NEWEST else 0
@@ -128,18 +160,23 @@ class Contacts:
             self.ball.opacity = 1.0 - faded / FAINTER
             return True
         self._marked, self._faded = (number, wanted), faded
-        values = event.values
-        base = snapshot.truth_links[0]
+        values, base = event.values, snapshot.truth_links[0]
         turn = matrix_from_quaternion(base[3:])
-        point = base[:3] + turn @ np.array([float(values[name]) for name in "xyz"])
-        force, acceleration = (turn @ np.array([float(values[name + axis]) for axis in "xyz"]) for name in "fa")
-        tail = point - _drawn(force, METRES_PER_NEWTON)  # outside of what was touched
-        self.force.points = np.array([[tail, point]], dtype=np.float32)
-        self.acceleration.points = np.array([[point, point + _drawn(acceleration, METRES_PER_ACCELERATION)]], dtype=np.float32)
+        place = where(self._arm, values) if hit else np.array([float(values[name]) for name in "xyz"])
+        point = tail = base[:3] + turn @ place
+        size = f"{float(values['force']):.0f} N"
+        if not hit:
+            force, acceleration = (turn @ np.array([float(values[name + axis]) for axis in "xyz"]) for name in "fa")
+            tail = point - _drawn(force, METRES_PER_NEWTON)  # outside of what was touched
+            self.force.points = np.array([[tail, point]], dtype=np.float32)
+            self.acceleration.points = np.array(
+                [[point, point + _drawn(acceleration, METRES_PER_ACCELERATION)]], dtype=np.float32
+            )
+            size += f", {float(values['acceleration']):.1f} m/s²"
         self.ball.position, self.ball.opacity = point, 1.0 - faded / FAINTER
-        self.force.visible = self.acceleration.visible = self.label.visible = self.ball.visible = True
+        self.force.visible = self.acceleration.visible = not hit
+        self.label.visible = self.ball.visible = True
         self.label.position = tail
-        size = f"{float(values['force']):.0f} N, {float(values['acceleration']):.1f} m/s²"
         self.label.text = f"{number}: {_kind(event)}, {size}"
         self.ghost.show(posture_of(values) if wanted != NEWEST else None, snapshot)  # of one that somebody has asked for
         return True
@@ -166,17 +203,26 @@ def _drawn(vector: Array, scale: float) -> Array:
 
 def choices(count: int) -> tuple[str, ...]:
     """What can be marked, when `count` contacts were seen."""
-    return (NEWEST, *(f"{number}" for number in range(count, max(count - SHOWN, 0), -1)))
+    return (NEWEST, *map(name, range(count, max(count - SHOWN, 0), -1)))
+
+
+def name(number: int) -> str:
+    """What a contact is called in the choice, and its row, which leads there."""
+    return f"contact {number}"
 
 
 def _kind(event: Event) -> str:
-    return event.kind.value.removeprefix(MARKED)
+    return HITS.get(event.kind) or event.kind.value.removeprefix(MARKED)
 
 
 def _row(number: int, event: Event) -> tuple[str, ...]:
+    """A row of the table: number, time, what, part, place of the tool in B, speed, force with its main direction, delay."""
     values = event.values
-    along = max("xyz", key=lambda axis: abs(float(values[f"f{axis}"])))
-    sign = "+" if float(values[f"f{along}"]) >= 0.0 else "−"
-    delay = f"{1000.0 * float(values['steps']) * TICK:.0f} ms"
+    place = " ".join(f"{1000.0 * float(values[axis]):.0f}".replace("-", "−") for axis in "xyz")
+    force, delay = f"{float(values['force']):.0f}", "–"
+    if event.kind not in HITS:
+        along = max("xyz", key=lambda axis: abs(float(values[f"f{axis}"])))
+        force += f" {'+' if float(values[f'f{along}']) >= 0.0 else '−'}{along}"
+        delay = f"{1000.0 * float(values['steps']) * TICK:.0f}"
     time = f"{event.tick / TICK_RATE:.2f}"
-    return (f"{number}", time, _kind(event), f"{values['rule']}", f"{float(values['force']):.0f} N {sign}{along}", delay)
+    return (f"{number}", time, _kind(event), str(values["part"]), place, f"{float(values['speed']):.0f}", force, delay)

@@ -39,3 +39,11 @@ def reveal(control: Any, visible: bool) -> bool:
         return False
     control.visible = visible
     return True
+
+
+def bring(control: Any, value: bool | str) -> bool:
+    """Let a control of viser say `value`; True if that changed anything."""
+    if control.value == value:
+        return False
+    control.value = value
+    return True

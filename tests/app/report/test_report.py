@@ -139,7 +139,8 @@ def test_the_figures_are_those_of_the_log(log: Log, summary: Summary) -> None:
     assert summary.duration == pytest.approx(2.4)
     assert summary.tcp_speed.value == max(log.state["v_tcp"].tolist())
     assert log.state["v_elbow"][round(summary.elbow_speed.t * 500) - 1] == summary.elbow_speed.value
-    forces = [math.hypot(*row[:3]) for row in log.state["F_user"].tolist()]
+    assert summary.told_tool.value == pytest.approx(max(math.hypot(*row[:3]) for row in log.state["F_user"].tolist()), rel=1e-12)
+    forces = np.maximum(log.truth["contact_tool"], log.truth["contact_link"]).tolist()
     assert summary.force_peak.value == pytest.approx(max(forces), rel=1e-12)
     assert summary.force_held.value == pytest.approx(max(min(forces[k : k + 250]) for k in range(len(forces) - 249)), rel=1e-12)
     assert [span.name for span in summary.modes] == ["TEACH", "FREE_DRIVE", "STOP"]
@@ -350,3 +351,52 @@ def test_the_same_log_gives_the_same_bytes(log: Log, tmp_path: Path) -> None:
         write_report(log, tmp_path / name)
     for name in ("summary.json", "report.html"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def pushed(folder: Path, part: str, force: list[float], **fields: Any) -> Log:
+    """A standing arm that a hand pushes at a part."""
+    push = {"at": 0.3, "do": "push", "for": 0.6, "part": part, "force": force}
+    return recorded({"title": "pushed", "duration": 1.2, "seed": 3, "timeline": [push], **fields}, folder)
+
+
+def test_the_true_force_counts_where_the_flange_sensor_ends(tmp_path: Path) -> None:
+    found = summarise(pushed(tmp_path, "flange", [0.0, 0.0, -500.0]))
+    assert found.on_tool.value == pytest.approx(500.0)
+    assert found.force_peak == found.on_tool
+    assert found.force_held.value == pytest.approx(500.0)
+    assert found.told_tool.value < 180.0
+    (clip,) = found.clips
+    assert re.match(r"the flange sensor ends at 100 N an axis: 500 N true, 1\d\d N sensed", clip)
+    assert not any(each.within for each in found.forces if (each.transient or each.quasi_static) < 500.0)
+    assert "500 N true" in page(found, [])
+
+
+def test_a_force_on_a_link_counts(tmp_path: Path) -> None:
+    found = summarise(pushed(tmp_path, "wrist_1", [0.0, 0.0, -220.0]))
+    assert found.on_link.value == pytest.approx(220.0)
+    assert found.on_tool.value == 0.0
+    assert found.force_peak.value == pytest.approx(220.0)
+    assert 0.0 < found.told_link.value < 400.0
+    assert found.told_tool.value < 20.0
+
+
+def test_what_the_table_bears_is_a_true_force(tmp_path: Path) -> None:
+    """The rod stands on a block of 20 N/mm that is pressed by 2 mm when the session begins: 40 N."""
+    rod = {"name": "rod", "mass": 0.3, "com": [0.0, 0.0, 0.05], "tcp": [0.0, 0.0, 0.15], "length": 0.15, "radius": 0.02}
+    press = {"at": 0.3, "do": "jog", "for": 0.5, "move": {"kind": "jog", "frame": "base", "axis": 2, "sign": -1, "length": 0.012}}
+    block = {"kind": "box", "name": "block", "position": [-0.6283, -0.1334, 0.091], "size": [0.2, 0.2, 0.2], "stiffness": 2.0e3}
+    about = {"title": "pressed", "duration": 1.4, "seed": 3, "tool": rod, "world": [block], "timeline": [press]}
+    log = recorded(about, tmp_path)
+    found = summarise(log)
+    deep = 0.191 - (log.truth["flange"][-1, 2] - 0.15)
+    assert found.on_link.value == 0.0
+    assert log.truth["contact_tool"][-1] == pytest.approx(2.0e3 * deep, rel=0.1)
+    assert found.clips == []
+
+
+def test_an_older_recording_says_that_it_has_no_true_force(log: Log, tmp_path: Path) -> None:
+    older(log.path, tmp_path / "older.mcap", {"contact_tool", "contact_link", "link_force"})
+    found = summarise(read(tmp_path / "older.mcap"))
+    assert not found.truth_known
+    assert found.force_peak == found.told_tool
+    assert "this recording has no true one" in page(found, [])

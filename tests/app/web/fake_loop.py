@@ -94,6 +94,7 @@ class FakeLoop:
         self.tick = 0
         self.mode = Mode.TEACH
         self.safety = Safety.NORMAL
+        self.law = Law.HOLD
         self.phase = Phase.OFF
         self.periods: tuple[Remaining, ...] = ()
         self.monitored: tuple[Monitored, ...] = ()
@@ -158,7 +159,7 @@ class FakeLoop:
             self.mode,
             self.safety,
             self.phase,
-            Law.HOLD,
+            self.law,
             None,
             1.0,
             50.0,

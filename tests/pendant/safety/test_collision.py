@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from pendant.events.event import Kind
+from pendant.events.event import Kind, posture_text
 from pendant.inputs import Inputs
 from pendant.program.jog_move import JogMove
-from pendant.safety.collision import MORE, Collisions
+from pendant.safety.collision import BEFORE, HELD_BY, MORE, Collisions
 from pendant.safety.settings import CollisionSettings
 from pendant.tick.estimate import Estimate, LinkForce
 from pendant.tick.modes import Law, Mode, Safety
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
-ELBOW = 2
+JOINTS, ELBOW = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"), 2
 USE = CollisionSettings()
 BELOW, ABOVE = 0.95, 1.05
 
@@ -30,7 +30,7 @@ def touched(tool: float = 0.0, link: float = 0.0, joint: int = 1, *, clipped: bo
 
 def hit(felt: Estimate, *, moves: bool = True, use: CollisionSettings = USE) -> Kind | None:
     """What an arm says that felt nothing before."""
-    watch = Collisions(ELBOW)
+    watch = Collisions(JOINTS, ELBOW)
     assert watch.step(touched(), use, moves=moves) is None
     event = watch.step(felt, use, moves=moves)
     return None if event is None else event.kind
@@ -48,7 +48,7 @@ def test_either_force_has_its_limit(moves: bool, limit: float, part: str) -> Non
 def test_what_is_not_a_number_is_a_collision() -> None:
     assert hit(touched(tool=math.nan)) is Kind.COLLISION
     assert hit(touched(link=math.nan)) is Kind.COLLISION
-    assert Collisions(ELBOW).step(touched(tool=math.inf), USE, moves=True) is not None
+    assert Collisions(JOINTS, ELBOW).step(touched(tool=math.inf), USE, moves=True) is not None
 
 
 def test_a_flange_sensor_that_is_out_tells_nothing() -> None:
@@ -62,29 +62,72 @@ def test_beyond_the_range_of_the_sensor_the_joints_feel_the_rest() -> None:
 
 
 @pytest.mark.parametrize(
-    ("felt", "part"),
+    ("felt", "part", "joint", "speed"),
     [
-        (touched(tool=80.0), "tool"),
-        (touched(tool=100.0, link=80.0, joint=4, clipped=True), "tool"),
-        (touched(link=80.0, joint=0), "elbow"),
-        (touched(link=80.0, joint=1), "elbow"),
-        (touched(link=80.0, joint=2), "forearm"),
-        (touched(link=80.0, joint=3), "wrist"),
-        (touched(link=80.0, joint=5, sensed=False), "wrist or tool"),
+        (touched(tool=80.0), "tool", "wrist_3", 250.0),
+        (touched(tool=100.0, link=80.0, joint=4, clipped=True), "tool", "wrist_3", 250.0),
+        (touched(link=80.0, joint=0), "elbow", "base", 150.0),
+        (touched(link=80.0, joint=1), "elbow", "shoulder", 150.0),
+        (touched(link=80.0, joint=2), "forearm", "elbow", 150.0),
+        (touched(link=80.0, joint=3), "wrist", "wrist_1", 250.0),
+        (touched(link=80.0, joint=5, sensed=False), "wrist or tool", "wrist_3", 250.0),
     ],
 )
-def test_the_event_names_part_force_limit_and_speed(felt: Estimate, part: str) -> None:
-    felt.v_tcp = 0.25
-    watch = Collisions(ELBOW)
-    watch.step(touched(), USE, moves=True)
+def test_the_event_tells_with_what_where_how_hard_and_how_fast(felt: Estimate, part: str, joint: str, speed: float) -> None:
+    """The contact has braked the arm to a tenth of its speed when its force tells."""
+    before = touched()
+    before.v_tcp, before.v_elbow = 0.25, 0.15
+    felt.v_tcp, felt.v_elbow = 0.025, 0.015
+    felt.tcp = np.array([0.4, -0.1, 0.2, 0.0, 0.0, 0.0])
+    watch = Collisions(JOINTS, ELBOW)
+    for _ in range(10):
+        watch.step(before, USE, moves=True)
     event = watch.step(felt, USE, moves=True)
     assert event is not None
     force = 180.0 if felt.clipped else 80.0
-    assert event.values == {"part": part, "force": pytest.approx(force), "limit": USE.force, "speed": 250.0}
+    assert event.values == {
+        "part": part,
+        "joint": joint,
+        "force": pytest.approx(force),
+        "limit": USE.force,
+        "speed": speed,
+        **{"x": 0.4, "y": -0.1, "z": 0.2},
+        "posture": posture_text(felt.q.tolist()),
+    }
+
+
+def test_a_speed_from_long_before_the_contact_does_not_count() -> None:
+    watch, fast, slow = Collisions(JOINTS, ELBOW), touched(), touched(tool=ABOVE * USE.force)
+    fast.v_tcp, slow.v_tcp = 0.8, 0.1
+    watch.step(fast, USE, moves=True)
+    for _ in range(BEFORE):
+        watch.step(touched(), USE, moves=True)
+    event = watch.step(slow, USE, moves=True)
+    assert event is not None
+    assert event.values["speed"] == 100.0
+
+
+@pytest.mark.parametrize(
+    ("felt", "part"),
+    [
+        (touched(tool=BELOW * HELD_BY * USE.force), ""),
+        (touched(tool=ABOVE * HELD_BY * USE.force), "tool"),
+        (touched(link=ABOVE * HELD_BY * USE.force, joint=2), "forearm"),
+        (touched(tool=30.0, link=40.0, joint=3), "wrist"),
+        (touched(tool=math.nan), ""),
+    ],
+)
+@pytest.mark.parametrize("on", [True, False])
+def test_an_arm_that_does_not_follow_is_told_what_holds_it(felt: Estimate, part: str, on: bool) -> None:
+    watch, use = Collisions(JOINTS, ELBOW), CollisionSettings(on=on)
+    watch.step(touched(), use, moves=True)
+    assert watch.holding(felt, use)["part"] == part
+    watch.rest()
+    assert watch.holding(felt, use)["part"] == part
 
 
 def test_an_arm_that_is_touched_already_may_move_away_but_not_press_on() -> None:
-    watch = Collisions(ELBOW)
+    watch = Collisions(JOINTS, ELBOW)
     watch.rest()
     for force in (180.0, 180.0 + BELOW * MORE, 120.0):
         assert watch.step(touched(tool=force), USE, moves=True) is None
@@ -93,7 +136,7 @@ def test_an_arm_that_is_touched_already_may_move_away_but_not_press_on() -> None
 
 
 def test_once_off_the_limit_is_that_of_the_settings_again() -> None:
-    watch = Collisions(ELBOW)
+    watch = Collisions(JOINTS, ELBOW)
     watch.rest()
     for force in (180.0, 100.0, 0.0):
         assert watch.step(touched(tool=force), USE, moves=True) is None
@@ -101,7 +144,7 @@ def test_once_off_the_limit_is_that_of_the_settings_again() -> None:
 
 
 def test_a_motion_may_begin_with_the_force_that_held_the_standing_arm() -> None:
-    watch = Collisions(ELBOW)
+    watch = Collisions(JOINTS, ELBOW)
     assert watch.step(touched(link=BELOW * USE.clamping), USE, moves=False) is None
     assert watch.step(touched(link=BELOW * USE.clamping), USE, moves=True) is None
 

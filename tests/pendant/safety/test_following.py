@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from pendant.events.event import Kind
+from pendant.event_table import render
+from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Inputs
 from pendant.safety.following import left_path
 from pendant.safety.settings import FollowingSettings
@@ -15,6 +16,12 @@ from tests.pendant.freedrive.test_state_machine import Bench
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 USE = FollowingSettings()
+HELD: Values = {"part": "forearm", "force": 40.0, "speed": 120.0, "x": 0.4, "y": 0.0, "z": 0.3, "posture": "0.0"}
+
+
+def left(lags: Estimate, use: FollowingSettings = USE) -> Event | None:
+    """The event of an arm whose forearm something holds."""
+    return left_path(lags, use, JOINTS, lambda: HELD)
 
 
 def lagging(share: float = 0.0, tool: float = 0.0) -> Estimate:
@@ -25,7 +32,7 @@ def lagging(share: float = 0.0, tool: float = 0.0) -> Estimate:
 
 
 @pytest.mark.parametrize(
-    ("share", "tool", "left"),
+    ("share", "tool", "beyond"),
     [
         (0.0, 0.0, False),
         (0.999 * USE.joint, 0.0, False),
@@ -37,14 +44,13 @@ def lagging(share: float = 0.0, tool: float = 0.0) -> Estimate:
         (0.0, math.nan, True),
     ],
 )
-def test_it_has_left_its_path_beyond_either_limit(share: float, tool: float, left: bool) -> None:
-    event = left_path(lagging(share, tool), USE, JOINTS)
-    assert (event is not None) is left
-    assert left_path(lagging(share, tool), FollowingSettings(on=False), JOINTS) is None
+def test_it_has_left_its_path_beyond_either_limit(share: float, tool: float, beyond: bool) -> None:
+    assert (left(lagging(share, tool)) is not None) is beyond
+    assert left(lagging(share, tool), FollowingSettings(on=False)) is None
 
 
-def test_the_event_names_joint_and_errors() -> None:
-    event = left_path(lagging(1.5, 0.012), USE, JOINTS)
+def test_the_event_names_joint_and_errors_and_what_holds_the_arm() -> None:
+    event = left(lagging(1.5, 0.012))
     assert event is not None
     assert event.kind is Kind.PATH_LEFT
     assert event.values == {
@@ -52,7 +58,10 @@ def test_the_event_names_joint_and_errors() -> None:
         "value": pytest.approx(math.degrees(0.03)),
         "limit": pytest.approx(math.degrees(0.02 * USE.joint)),
         "distance": pytest.approx(12.0),
+        **HELD,
     }
+    assert "Forearm: 40 N" in render(event)[1]
+    assert "orearm" not in render(Event(Kind.PATH_LEFT, 0, {**event.values, "part": ""}))[1]
 
 
 def test_a_held_arm_is_stopped_once() -> None:
@@ -66,5 +75,5 @@ def test_a_held_arm_is_stopped_once() -> None:
 
 
 def test_an_arm_without_a_reference_is_not_judged() -> None:
-    assert left_path(estimate(), USE, JOINTS) is None
+    assert left(estimate()) is None
     assert estimate().following == ON_PATH

@@ -18,7 +18,7 @@ from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peers
 from app.robot_interface.transport.tcp_port import Farewell
 from app.urscript.running.script_runner import ScriptRunner
-from pendant.events.event import Kind
+from pendant.events.event import Event, Kind
 from pendant.inputs import Command
 from tests.app.robot_interface.robot_bench import RobotBench
 from tests.sim.arms import UR5E
@@ -165,6 +165,28 @@ def test_messages_of_events_programs_and_safety(cell: Cell) -> None:
     session.over()
     cell.robot.step(60)
     assert packages(theirs) == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "joint", "more", "code"),
+    [
+        (Kind.COLLISION, "wrist_3", {"limit": 50.0}, (157, 5)),
+        (Kind.COLLISION, "base", {"limit": 50.0}, (157, 0)),
+        (Kind.PATH_LEFT, "elbow", {"value": 1.0, "limit": 0.8, "distance": 4.0}, (153, 2)),
+    ],
+)
+def test_a_protective_stop_has_the_code_that_clients_of_a_ur_know(
+    cell: Cell, kind: Kind, joint: str, more: dict[str, float], code: tuple[int, int]
+) -> None:
+    """C157: a collision of joint n; C153: joint n deviates from the path."""
+    session, theirs = cell.open("primary")
+    cell.robot.step()
+    packages(theirs)
+    met = {"part": "tool", "force": 60.0, "speed": 100.0, "x": 0.0, "y": 0.0, "z": 0.0, "posture": ""}
+    session.told(Event(kind, 1, {"joint": joint, **met, **more}))
+    (told,) = packages(theirs)
+    assert told[10] == messages.MessageType.ERROR
+    assert struct.unpack_from(">iii", told, 11) == (*code, 3)
 
 
 def test_a_program_is_told_by_the_keys_that_clients_wait_for(cell: Cell) -> None:

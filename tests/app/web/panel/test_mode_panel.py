@@ -13,7 +13,7 @@ from pendant.freedrive.periods import Remaining
 from pendant.inputs import Button, Command
 from pendant.program.steps import ProgramState
 from pendant.tick.limit_engine import Monitored
-from pendant.tick.modes import Mode, Phase, Safety
+from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.walls.containment import WallState
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -49,8 +49,17 @@ Join = Callable[[], RawClient]
         ),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.PERIOD, (Remaining("free-drive", 499, 1500),), ("About to end",), Colour.AMBER),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.RESTART, (Remaining("restart", 10, 1500),), ("About to end",), Colour.AMBER),
-        (Mode.TEACH, Safety.NORMAL, Phase.OFF, (Remaining("cool-down", 10, 1000),), ("Ready", "Ready again in"), Colour.GREEN),
-        (Mode.STOP, Safety.EMERGENCY_STOP, Phase.OFF, (), ("STOP", "Stopped", "Emergency stop"), Colour.RED),
+        (
+            Mode.TEACH,
+            Safety.NORMAL,
+            Phase.OFF,
+            (Remaining("cool-down", 10, 1000),),
+            ("Ready", "Free-drive again in"),
+            Colour.GREEN,
+        ),
+        (Mode.STOP, Safety.EMERGENCY_STOP, Phase.OFF, (), ("EMERGENCY STOP", "Stopped", "Emergency stop"), Colour.RED),
+        (Mode.STOP, Safety.PROTECTIVE_STOP, Phase.OFF, (Remaining("cool-down", 10, 1000),), ("PROTECTIVE STOP",), Colour.RED),
+        (Mode.STOP, Safety.NORMAL, Phase.OFF, (), ("<b>STOP</b>",), Colour.RED),
     ],
 )
 def test_the_light_and_the_rings_say_what_holds(
@@ -69,6 +78,13 @@ def test_the_light_and_the_rings_say_what_holds(
     for word in words:
         assert word in shown
     assert f"--c:{colour.value}" in still.panel.light.shown
+    assert mode is not Mode.STOP or "Ready" not in shown
+
+
+def test_an_arm_that_is_jogged_is_not_told_as_ready(loop: FakeLoop, still: Served) -> None:
+    for loop.law, word in ((Law.FOLLOW, "The arm moves"), (Law.HOLD, "Ready")):
+        still.docks.show(loop.latest())
+        assert f"<span>{word}</span>" in still.panel.light.shown
 
 
 def test_every_mode_and_safety_mode_has_words(loop: FakeLoop, still: Served) -> None:

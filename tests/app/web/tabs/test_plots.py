@@ -9,8 +9,9 @@ import pytest
 
 from app.report.pull_colours import PULL_COLOURS
 from app.web.server import Served
-from app.web.tabs.contact_log import FADE
+from app.web.tabs.contact_log import FADE, NOT_STOPPED, OFF
 from app.web.tabs.plots import KEPT, View
+from pendant.all_settings import apply
 from pendant.events.event import Kind
 from pendant.guided.pull import HandFelt, PullCauses
 from tests.app.web.fake_loop import FakeLoop
@@ -31,11 +32,22 @@ TOUCH = {
     "az": 1.6,
     "ratio": 3.0,
     "steps": 4,
+    "speed": 120.0,
     "x": 0.5,
     "y": 0.1,
     "z": 0.2,
     "posture": "0.0000 -1.2000 1.5000 -1.8700 -1.5700 0.1000",
     "action": "stop",
+}
+
+HIT = {
+    "part": "forearm",
+    "force": 180.0,
+    "speed": 250.0,
+    "x": 0.5,
+    "y": -0.1,
+    "z": 0.2,
+    "posture": TOUCH["posture"],
 }
 
 
@@ -111,12 +123,12 @@ def test_a_contact_is_listed_marked_and_exported(loop: FakeLoop, still: Served) 
     contacts = still.docks.contacts
     shown = contacts.table.shown
     assert shown.index("lost") < shown.index("gained")
-    assert "12 N −z" in shown
-    assert "8 ms" in shown
+    for cell in ("tool", "500 100 200", "120", "12 −z", "8"):
+        assert f"<td>{cell}</td>" in shown
     assert still.docks.plots.upper.shown.count("0v") == 2
     assert contacts.force.visible
     assert contacts.label.text == "2: lost, 9 N, 2.0 m/s²"
-    contacts.choice.value = "1"
+    contacts.choice.value = "contact 1"
     still.docks.show(loop.latest())
     assert contacts.label.text == "1: gained, 12 N, 2.0 m/s²"
     assert contacts.ghost.posture == (0.0, -1.2, 1.5, -1.87, -1.57, 0.1)
@@ -153,3 +165,41 @@ def test_what_pulls_is_drawn_as_shares_and_told_in_words(loop: FakeLoop, still: 
     assert shares.sum(axis=0) == pytest.approx(1.0)
     assert shares[3].tolist() == pytest.approx([0.0, 0.2689, 0.9707], abs=1e-4)
     assert np.isnan(plots.history.pull[:, -1]).all()
+
+
+def test_a_hit_is_listed_beside_the_changes_in_contact_and_marked_when_it_is_chosen(loop: FakeLoop, still: Served) -> None:
+    """Its own mark stands at the arm while it is stopped; of what held an arm the log tells where that is known."""
+    contacts = still.docks.contacts
+    loop.tick = 1000
+    hit = HIT | {"joint": "elbow", "limit": 50.0}
+    loop.note(Kind.COLLISION, **hit)
+    loop.note(Kind.PATH_LEFT, **(HIT | {"part": "", "joint": "base", "value": 1.0, "limit": 0.8, "distance": 3.0}))
+    still.docks.show(loop.latest())
+    assert contacts.table.shown.count("<tr") == 2
+    for cell in ("collision", "forearm", "500 −100 200", "250", "180", "–"):
+        assert f"<td>{cell}</td>" in contacts.table.shown
+    assert not contacts.ball.visible
+    contacts.choice.value = "contact 1"
+    still.docks.show(loop.latest())
+    assert (contacts.ball.visible, contacts.force.visible, contacts.label.text) == (True, False, "1: collision, 180 N")
+    row = next(csv.DictReader(io.StringIO(contacts.file().decode())))
+    assert (row["kind"], row["part"], row["speed"], row["delay_ms"], row["rule"]) == ("collision", "forearm", "250.0", "", "")
+
+
+def test_the_log_says_what_is_not_looked_for_and_has_its_switch(loop: FakeLoop, still: Served) -> None:
+    contacts = still.docks.contacts
+    still.docks.show(loop.latest())
+    assert OFF in contacts.note.shown
+    assert NOT_STOPPED not in contacts.note.shown
+    assert not contacts.detects.value
+    loop.settings = apply(loop.settings, {"contact.on": True, "collision.on": False})
+    still.docks.show(loop.latest())
+    assert OFF not in contacts.note.shown
+    assert NOT_STOPPED in contacts.note.shown
+    assert contacts.detects.value
+
+
+def test_the_switch_of_the_log_switches_the_detection(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    client.set(served.docks.contacts.detects._impl.uuid, value=True)
+    until(lambda: loop.desk.take().inputs.settings.get("contact.on") is True, "asked for")
