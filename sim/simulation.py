@@ -88,6 +88,7 @@ class Simulation:
             joints=tuple(arm.chain.joints),
             rated=tuple(arm.limits.torque),
             ranges=tuple(arm.limits.position),
+            speeds=tuple(arm.limits.speed),
             borders=tuple(scenario.walls),
             frames=known_frames(scenario),
             equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
@@ -164,6 +165,7 @@ class Simulation:
         estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
         self.link_forces.read(sample, self._zero, estimate)
+        estimate.motion = references.meter.measure(estimate.qd, estimate.F_user)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
         decision = supervisor.step(estimate, wishes.inputs)

@@ -88,10 +88,20 @@ def stopped(headline: str, guidance: str, keys: tuple[str, ...]) -> EventRow:
     return EventRow(Effect.LEAVE_TO_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True)
 
 
-def protected(headline: str, guidance: str, keys: tuple[str, ...], category: int = 2) -> EventRow:
+def protected(
+    headline: str, guidance: str, keys: tuple[str, ...], category: int = 2, *, variant: tuple[str, str] | None = None
+) -> EventRow:
     """A protective stop of this category."""
     return EventRow(
-        Effect.PROTECTIVE_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True, category=category
+        Effect.PROTECTIVE_STOP,
+        Severity.STOP,
+        headline,
+        guidance,
+        keys,
+        Clears.RESET,
+        cool_down=True,
+        variant=variant,
+        category=category,
     )
 
 

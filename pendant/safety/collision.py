@@ -34,13 +34,16 @@ class Collisions:
         """Nothing holds or moves the arm by itself: it is free, or stopped."""
         self._allowed[:] = inf, inf
 
-    def step(self, estimate: Estimate, settings: CollisionSettings, *, moves: bool) -> Event | None:
+    def step(
+        self, estimate: Estimate, settings: CollisionSettings, *, moves: bool, most: tuple[float, float] = (inf, inf)
+    ) -> Event | None:
         """The event of an arm that meets more than it may, None where it does not. What is not a number is more.
 
         Args:
             estimate: of this tick.
             settings: the limits.
             moves: the arm follows a motion, and nobody asked for a contact.
+            most: the robot's limits of the forces of tool and link [N].
         """
         if not settings.on:
             return None
@@ -52,7 +55,7 @@ class Collisions:
             tool, on_link = tool + on_link, 0.0
         least = settings.force if moves else settings.clamping
         for k, force in enumerate((tool, on_link)):
-            limit = self._allowed[k] = max(least, min(self._allowed[k], force + MORE))
+            limit = self._allowed[k] = max(min(least, most[k]), min(self._allowed[k], force + MORE))
             if not force <= limit < inf:
                 part = "tool" if k == 0 else self._part(link.joint, sensed=estimate.wrench_valid)
                 told = force if force < MOST else MOST

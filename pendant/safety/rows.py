@@ -1,7 +1,7 @@
-"""Rows of the event table: protective stops of a robot that does not do what it should (RL-1, RL-3)."""
+"""Rows of the event table: protective stops of a robot that does not do what it should (RL-1, RL-3, RL-5)."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import EventRow, protected
+from pendant.events.event_row import EXCESS, EventRow, protected
 
 PROTECTION: dict[Kind, EventRow] = {
     Kind.PATH_LEFT: protected(
@@ -13,5 +13,14 @@ PROTECTION: dict[Kind, EventRow] = {
         "Protective stop: collision",
         "{part}: {force:.0f} N at {speed:.0f} mm/s, limit {limit:.0f} N. Reset, then jog or guide it away.",
         ("part", "force", "limit", "speed"),
+    ),
+    Kind.LIMIT_EXCEEDED: protected(
+        "Protective stop: {parameter} too large",
+        "{part}: {value:.2f} {unit}, allowed {limit:.2f} in {mode}. Reset, then move more slowly.",
+        (*EXCESS, "mode", "position"),
+        variant=(
+            "position",
+            "{part}: {value:.1f}{unit}, allowed {limit:.1f}{unit} in {mode}. Reset, then move it back.",
+        ),
     ),
 }
