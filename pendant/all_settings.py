@@ -16,14 +16,13 @@ from pendant.freedrive.settings import (
     Enabling,
     FreeDriveSettings,
     HoldSettings,
-    ReducedLimits,
     SequenceSettings,
 )
 from pendant.guided.settings import Unexplained
 from pendant.haptics import HapticUse
 from pendant.limits.settings import AxisSettings, JointLimits, JointSettings, LimitSettings, Soft, Static
 from pendant.program.settings import ProgramUse
-from pendant.safety.settings import CollisionSettings, FollowingSettings
+from pendant.safety.settings import CollisionSettings, FollowingSettings, RobotLimitSettings
 from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import Limit, Section, SettingError, SettingRow, Value
 from pendant.settings.schema import choice as _choice
@@ -91,7 +90,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     hold: HoldSettings = HoldSettings()
     button: ButtonUse = ButtonUse()
     enabling: Enabling = Enabling()
-    reduced: ReducedLimits = ReducedLimits()
+    robot_limits: RobotLimitSettings = RobotLimitSettings()
     following: FollowingSettings = FollowingSettings()
     collision: CollisionSettings = CollisionSettings()
     limits: LimitSettings = LimitSettings()

@@ -16,7 +16,7 @@ from pendant.limits.parameters import ZEROS
 from pendant.limits.soft_limits import Damping
 from pendant.motion.script_requests import ForceMode, PathOffset
 from pendant.program.steps import Move, ProgramState
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import JointRange, SpeedLimits
 from pendant.signals.enabling_device import Grip
 from pendant.tick.limit_engine import Monitored
 from pendant.tick.modes import Law, Mode, Phase, Safety
@@ -49,7 +49,8 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     outputs: frozenset[int] = frozenset()  # digital outputs that the program has switched on
     walls: tuple[WallState, ...] = ()  # that hold
     grip: Grip | None = None  # of the enabling device, None where none is used
-    speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
+    speed_limits: SpeedLimits | None = None  # what the control law keeps the arm within by moving it more slowly (RL-4)
+    joint_range: JointRange | None = None  # in which motions under Law.FOLLOW keep the joints; None: the arm's own (RL-6)
     workspace: Workspace | None = None  # what every motion under Law.FOLLOW is kept in (VW-9)
     damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
     zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)

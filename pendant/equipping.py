@@ -10,9 +10,9 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import JOINTS_SENSED, WrenchMean, motion_ok, wrench_ok
 from pendant.program.steps import JointMove
-from pendant.robot.reduced import SpeedLimits
 from pendant.robot.requests import Calls
 from pendant.robot.robot_mode import Robot
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
@@ -24,7 +24,10 @@ from pendant.tooling.wrist_postures import WANTED, best_first, candidates
 from pendant.tooling.wrist_room import WRIST, Obstacle, WristRoom
 from pendant.walls.containment import Containment
 
-SLOW = SpeedLimits(SLOW_TOOL, SLOW_ELBOW, SLOW_JOINT)
+KEPT = 0.85
+"""Share of the speeds that stop the wizard which it keeps within: what the measurement adds, and swinging, stays below them."""
+
+SLOW = SpeedLimits(KEPT * SLOW_TOOL, KEPT * SLOW_ELBOW, KEPT * SLOW_JOINT)
 
 GENTLE = 0.1
 """Share of a joint's acceleration with which the wrist is turned."""
@@ -85,10 +88,11 @@ class Equipping:
         """The wizard moves the arm."""
         return self._robot.turn is not None
 
-    def limits(self, reduced: SpeedLimits | None) -> SpeedLimits | None:
-        """What the control law keeps the arm within, in addition to what holds in REDUCED."""
-        slower = SLOW if reduced is None else SpeedLimits(*map(min, SLOW, reduced))
-        return slower if self.moving else reduced
+    def limits(self, usual: SpeedLimits | None) -> SpeedLimits | None:
+        """What the control law keeps the arm within: what it usually does, and less while the wizard moves it."""
+        if not self.moving:
+            return usual
+        return SLOW if usual is None else SpeedLimits(*map(min, SLOW, usual))
 
     def step(
         self,

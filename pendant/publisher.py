@@ -9,8 +9,8 @@ from pendant.haptics import Shake
 from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of, with_joints
 from pendant.motion.scripting import Scripting
 from pendant.program.steps import ProgramState
-from pendant.robot.reduced import SpeedLimits
 from pendant.robot.robot_mode import Robot
+from pendant.safety.robot_limits import JointRange, SpeedLimits
 from pendant.sensor.taring import Taring
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tooling.tool_in_use import Tooling
@@ -44,6 +44,7 @@ class Publisher:
         contacts: tuple[Contact, ...],
         looks: bool,
         speeds: SpeedLimits | None,
+        joint_range: JointRange | None,
         shake: Shake | None,
     ) -> Decision:
         """The decision of one tick.
@@ -53,7 +54,8 @@ class Publisher:
             events: all that happened in it.
             contacts: changes in contact seen in it.
             looks: for them, as in `Decision`.
-            speeds: limits of REDUCED.
+            speeds: that the robot's limits allow.
+            joint_range: that they allow, None for the arm's own.
             shake: haptic feedback.
         """
         robot, tooling, taring, use = self._robot, self._tooling, self._taring, self._settings
@@ -92,6 +94,7 @@ class Publisher:
             walls=walls,
             grip=robot.grip,
             speed_limits=speeds,
+            joint_range=joint_range,
             workspace=self._containment.workspace(use.walls),
             damping=damping,
             zones=free.zones,

@@ -27,6 +27,7 @@ from pendant.robot.joint_sensors import JointSensors
 from pendant.robot.requests import Calls
 from pendant.robot.robot_mode import Robot
 from pendant.robot.safety_inputs import SafetyInputs
+from pendant.safety.robot_limits import ArmRating
 from pendant.sensor.sensor_spec import USUAL, SensorSpec
 from pendant.settings.schema import ticks
 from pendant.settings_lock import change, locked
@@ -66,6 +67,7 @@ class Supervisor:
         borders: tuple[AnyBorder, ...] = (),
         frames: Mapping[str, Pose] | None = None,
         ranges: tuple[float, ...] | None = None,
+        speeds: tuple[float, ...] | None = None,
         equipment: Equipment | None = None,
         sensor: SensorSpec = USUAL,
         shape: ArmShape | None = None,
@@ -79,6 +81,7 @@ class Supervisor:
             borders: walls and areas; `pendant.walls.definitions.problem` has found nothing.
             frames: poses X_BR of what they lie in, apart from the base and the arm's own parts.
             ranges: largest angle of each joint either way [rad]; None: joints turn without end.
+            speeds: that each joint is made for [rad/s]; None: any.
             equipment: what is at the flange, and the tools to choose from; None: nothing.
             sensor: what is known of the flange force/torque sensor.
             shape: of the arm; None: nothing is known of it, and the payload wizard turns no wrist by itself.
@@ -96,11 +99,13 @@ class Supervisor:
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
         self.containment = Containment(borders, frames or {})
-        zones = JointZones(rated, ranges or (math.inf,) * n_joints)
+        endless = (math.inf,) * n_joints
+        zones = JointZones(rated, ranges or endless)
         self._monitor = ContactMonitor(sensor)
         self._free = FreeDrive(self._joints, rated, self.containment, zones, sensor=sensor)
         self._robot = Robot(self._free, self._sequencer)
-        self._safety = SafetyInputs(self._robot, self._joints, shape.elbow if shape else n_joints // 2 - 1)
+        rating = ArmRating(self._joints, ranges or endless, speeds or endless)
+        self._safety = SafetyInputs(self._robot, rating, shape.elbow if shape else n_joints // 2 - 1)
         self._run = ProgramRun(self._robot, self._mean, n_joints, self.containment)
         self._tooling = Tooling(equipment or Equipment())
         self._equipping = Equipping(
@@ -259,13 +264,17 @@ class Supervisor:
     def _publish(self, events: list[Event], looks: bool) -> Decision:
         """What follows from all of it; `looks`: something asks for changes in contact."""
         law, haptics = self._robot.law(), self._haptics
-        speeds = self._equipping.limits(self._safety.speed_limits(self.settings))
+        limits = self._safety.limits(self.settings)
+        speeds = self._equipping.limits(None if limits is None else limits.speeds)
+        joint_range = None if limits is None else limits.joint_range
         if self.settings.haptics.on or haptics.busy:
             self._shake(law, events)
         self._holding = law is _HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)
         # A guided arm is not about to start a program, which would need the signals of the ticks before.
         looks = looks or law is not _FREE
-        return self._publisher.step(law, events, contacts=self._contacts, looks=looks, speeds=speeds, shake=haptics.shake)
+        return self._publisher.step(
+            law, events, contacts=self._contacts, looks=looks, speeds=speeds, joint_range=joint_range, shake=haptics.shake
+        )
 
     def _shake(self, law: Law, events: list[Event]) -> None:
         """What is to be felt in this tick (HF-1)."""

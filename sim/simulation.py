@@ -90,6 +90,7 @@ class Simulation:
             joints=tuple(arm.chain.joints),
             rated=tuple(arm.limits.torque),
             ranges=tuple(arm.limits.position),
+            speeds=tuple(arm.limits.speed),
             borders=tuple(scenario.walls),
             frames=known_frames(scenario),
             equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
@@ -166,6 +167,7 @@ class Simulation:
         answered = references.answered
         estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
+        estimate.motion = references.meter.measure(estimate.qd, estimate.F_user)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
             self.watch.rest(estimate)

@@ -17,6 +17,7 @@ FILE = Path(__file__).parent / "names.json"
 
 GONE = {
     "session control=confirm": "never accepted: each session that named it was refused",
+    "event reduced_exceeded": "is called limit_exceeded, and tells of the limits of NORMAL as well",
     **{f"setting {old}": f"is called {new}, and who uses the old name is told so" for old, new in RENAMED.items()},
 }
 """What was a name once, and why it is none now."""

@@ -21,7 +21,7 @@ from pendant.motion.script_requests import (
 )
 from pendant.program.jog_move import JogMove, MoveStraight, MoveThere
 from pendant.program.steps import JointMove, LinearMove, Move
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.frames import quaternion_from_matrix, rotation_by

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.files.library import load_arm
 from pendant.program.steps import Move
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from sim.arm.arm_file import Arm
 from sim.arm.frames import joint_frames
 

@@ -122,22 +122,6 @@ class Enabling(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     on: Annotated[bool, _switch("FD-23", "motion needs the enabling device in its middle position")] = False
 
 
-class ReducedLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Safety mode REDUCED."""
-
-    BASIC = ("on", "tcp_speed")
-
-    on: Annotated[bool, _switch("FD-1", "the safety mode REDUCED slows the arm down, and stops it when it is faster")] = True
-    tcp_speed: Annotated[float, _number(0.05, 0.25, "m/s", "FD-1", text="largest speed of the tool centre point in REDUCED")] = (
-        0.25
-    )
-    elbow_speed: Annotated[float, _number(0.05, 0.25, "m/s", "FD-1", text="largest speed of the elbow in REDUCED")] = 0.25
-    joint_speed: Annotated[float, _number(0.1, 3.0, "rad/s", "FD-1", text="largest speed of a joint in REDUCED")] = 1.0
-    transition: Annotated[float, _number(0.1, 1.0, "s", "FD-1", text="time in which the arm slows down when REDUCED begins")] = (
-        0.5
-    )
-
-
 class ButtonUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The free-drive button."""
 

@@ -1,7 +1,7 @@
 """Rows of the event table: safety inputs, sensors, stops and resets (FD-1)."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import EXCESS, Clears, Effect, EventRow, Severity, denied, info, protected
+from pendant.events.event_row import Clears, Effect, EventRow, Severity, denied, info, protected
 
 STAYS = "The robot stays in STOP."
 """Reaction to a reset that is refused."""
@@ -68,12 +68,6 @@ SAFETY: dict[Kind, EventRow] = {
         ("tcp", "elbow", "joint_speed"),
     ),
     Kind.REDUCED_OFF: info("Reduced speed off"),
-    Kind.REDUCED_EXCEEDED: protected(
-        "Protective stop: {parameter} in REDUCED",
-        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Move it more slowly, then reset.",
-        EXCESS,
-        category=0,
-    ),
     Kind.STOPPED: info(
         "Stopped in {time:.2f} s",
         "Way of the tool {distance:.3f} m, stop category {category}.",

@@ -3,11 +3,11 @@
 from pendant.all_settings import Settings
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command
-from pendant.limits.validity import JOINTS_SENSED, joints_ok, motion_ok
-from pendant.robot.reduced import Reduced, SpeedLimits
+from pendant.limits.validity import JOINTS_SENSED, joints_ok
 from pendant.robot.robot_mode import Robot
 from pendant.safety.collision import Collisions
 from pendant.safety.following import left_path
+from pendant.safety.robot_limits import ArmRating, LimitWatch, RobotLimits
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, Safety
@@ -19,24 +19,24 @@ BLIND = ticks(0.1)
 class SafetyInputs:
     """Their levels, and what they do to the robot."""
 
-    __slots__ = ("_blind", "_collisions", "_joints", "_reduced", "_robot", "_safeguard")
+    __slots__ = ("_blind", "_collisions", "_joints", "_limits", "_robot", "_safeguard")
 
-    def __init__(self, robot: Robot, joints: tuple[str, ...], elbow: int) -> None:
+    def __init__(self, robot: Robot, rating: ArmRating, elbow: int) -> None:
         """
         Args:
             robot: that they act on.
-            joints: the names used in events, base to flange.
+            rating: what its joints are made for; their names are used in events.
             elbow: index of the joint whose origin is the elbow.
         """
-        self._robot, self._joints = robot, joints
-        self._reduced = Reduced()
-        self._collisions = Collisions(joints, elbow)
+        self._robot, self._joints = robot, rating.names
+        self._limits = LimitWatch(rating)
+        self._collisions = Collisions(rating.names, elbow)
         self._safeguard = False  # it is open
         self._blind = 0  # ticks for which some motor angle has been out
 
-    def speed_limits(self, settings: Settings) -> SpeedLimits | None:
-        """What holds in REDUCED, None outside of it."""
-        return self._reduced.limits(settings.reduced) if self._reduced.on else None
+    def limits(self, settings: Settings) -> RobotLimits | None:
+        """The robot's limits that hold, None where they are switched off."""
+        return self._limits.limits(settings.robot_limits)
 
     def step(
         self, estimate: Estimate, commands: tuple[Command, ...], settings: Settings, events: list[Event], *, held: bool
@@ -60,7 +60,7 @@ class SafetyInputs:
             self._reset(estimate, settings, events, stop=stop, held=held)
 
     def watch(self, estimate: Estimate, settings: Settings, events: list[Event], *, asked: bool) -> None:
-        """Every tick: stop where a motor angle is lost, the arm does not follow, hits something, or is too fast for REDUCED.
+        """Every tick: stop where a motor angle is lost, the arm does not follow, hits something, or exceeds a limit of the robot.
 
         Args:
             estimate: of this tick.
@@ -78,10 +78,15 @@ class SafetyInputs:
         if robot.mode is _STOP or robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE:
             self._collisions.rest()
         else:
-            hit = self._collisions.step(estimate, settings.collision, moves=robot.move is not None and not asked)
+            forces = self._limits.forces(settings.robot_limits)
+            presses = robot.move is None or asked
+            hit = self._collisions.step(estimate, settings.collision, moves=not presses, most=forces)
         if robot.mode is _STOP:
+            self._limits.rest()
             return
-        stop = hit or self._left_path(estimate, settings) or self._too_fast(estimate, settings)
+        stop = hit or self._left_path(estimate, settings)
+        if stop is None and (estimate.joints_valid or estimate.degraded):
+            stop = self._limits.step(estimate, settings.robot_limits, moves=robot.move is not None)
         if stop is not None:
             robot.happen(stop, settings, events)
 
@@ -90,17 +95,10 @@ class SafetyInputs:
         collisions = self._collisions
         return left_path(estimate, settings.following, self._joints, lambda: collisions.holding(estimate, settings.collision))
 
-    def _too_fast(self, estimate: Estimate, settings: Settings) -> Event | None:
-        """The event of an arm that is too fast for REDUCED."""
-        if not (self._reduced.on and motion_ok(estimate)):
-            return None
-        excess = self._reduced.step(estimate, settings.reduced, self._joints)
-        return None if excess is None else Event(Kind.REDUCED_EXCEEDED, estimate.tick, dict(excess._asdict()))
-
     @property
     def _resting(self) -> Safety:
         """The safety mode where nothing has stopped the robot."""
-        return Safety.REDUCED if self._reduced.on else Safety.NORMAL
+        return Safety.REDUCED if self._limits.reduced else Safety.NORMAL
 
     def _take_levels(self, tick: int, commands: tuple[Command, ...], settings: Settings, events: list[Event]) -> None:
         """Safeguard and REDUCED: open and REDUCED win over their opposites in the same tick."""
@@ -112,12 +110,13 @@ class SafetyInputs:
         elif Command.SAFEGUARD_CLOSED in commands and self._safeguard:
             self._safeguard = False
             events.append(Event(Kind.SAFEGUARD_CLOSED, tick))
-        reduced = settings.reduced
+        limits = settings.robot_limits
         if Command.REDUCED_ON in commands:
-            if self._reduced.switch(True, reduced):
-                values: Values = {"tcp": reduced.tcp_speed, "elbow": reduced.elbow_speed, "joint_speed": reduced.joint_speed}
+            if self._limits.switch(True, limits):
+                reduced = limits.reduced
+                values: Values = {"tcp": reduced.tool_speed, "elbow": reduced.elbow_speed, "joint_speed": reduced.joint_speed}
                 events.append(Event(Kind.REDUCED_ON, tick, values))
-        elif Command.REDUCED_OFF in commands and self._reduced.switch(False, reduced):
+        elif Command.REDUCED_OFF in commands and self._limits.switch(False, limits):
             events.append(Event(Kind.REDUCED_OFF, tick))
         if robot.safety <= Safety.REDUCED:
             robot.safety = self._resting

@@ -46,20 +46,23 @@ class Collisions:
         self._allowed[:] = inf, inf
         self._speeds.clear()
 
-    def step(self, estimate: Estimate, settings: CollisionSettings, *, moves: bool) -> Event | None:
+    def step(
+        self, estimate: Estimate, settings: CollisionSettings, *, moves: bool, most: tuple[float, float] = (inf, inf)
+    ) -> Event | None:
         """The event of an arm that meets more than it may, None where it does not. What is not a number is more.
 
         Args:
             estimate: of this tick.
             settings: the limits.
             moves: the arm follows a motion, and nobody asked for a contact.
+            most: the robot's limits of the forces of tool and link [N].
         """
         self._speeds.append((estimate.v_tcp, estimate.v_elbow))
         if not settings.on:
             return None
         least = settings.force if moves else settings.clamping
         for k, force in enumerate(_forces(estimate)):
-            limit = self._allowed[k] = max(least, min(self._allowed[k], force + MORE))
+            limit = self._allowed[k] = max(min(least, most[k]), min(self._allowed[k], force + MORE))
             if not force <= limit < inf:
                 joint = self._joints[-1 if k == 0 else estimate.link_force.joint]
                 return Event(Kind.COLLISION, estimate.tick, {"joint": joint, "limit": limit, **self._met(estimate, k, force)})

@@ -1,6 +1,8 @@
-"""Settings of the protective stops."""
+"""Settings of the protective stops, and of the robot's limits."""
 
 from typing import Annotated
+
+from msgspec import Meta
 
 from pendant.settings.schema import Section
 from pendant.settings.schema import number as _number
@@ -35,3 +37,86 @@ class CollisionSettings(Section, frozen=True, forbid_unknown_fields=True, kw_onl
         float,
         _number(50.0, 250.0, "N", "RL-3", text="the same of an arm that stands, and where a program asked for contact"),
     ] = 150.0
+
+
+Speed = Annotated[float, _number(0.05, 5.0, "m/s", "RL-4", text="largest speed of the tool centre point")]
+ElbowSpeed = Annotated[float, _number(0.05, 5.0, "m/s", "RL-4", text="largest speed of the elbow")]
+JointSpeed = Annotated[float, _number(0.1, 6.4832, "rad/s", "RL-4", text="largest speed of a joint")]
+ToolForce = Annotated[float, _number(50.0, 250.0, "N", "RL-3", text="largest force of the tool on what it meets")]
+ElbowForce = Annotated[float, _number(50.0, 250.0, "N", "RL-3", text="largest force of a link on what it meets")]
+Momentum = Annotated[float, _number(1.0, 100.0, "kg·m/s", "RL-4", text="largest momentum of the moving arm with its payload")]
+Power = Annotated[float, _number(10.0, 1000.0, "W", "RL-4", text="largest mechanical work a second on what the tool meets")]
+StoppingTime = Annotated[float, _number(0.15, 2.0, "s", "RL-4", text="longest time in which a moving arm comes to rest")]
+StoppingDistance = Annotated[
+    float, _number(0.02, 3.0, "m", "RL-4", text="longest way of tool or elbow on which a moving arm comes to rest")
+]
+FURTHEST = 6.3358
+"""Of a joint either way [rad], 363°: the maker's default."""
+
+
+def _angle(joint: int, end: str) -> Meta:
+    return _number(-FURTHEST, FURTHEST, "rad", "RL-6", text=f"{end} angle of joint {joint}, counted from the base")
+
+
+class JointPositions(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Between which angles the arm's own motions keep the joints. An arm whose own range is smaller keeps that."""
+
+    j1_min: Annotated[float, _angle(1, "smallest")] = -FURTHEST
+    j1_max: Annotated[float, _angle(1, "largest")] = FURTHEST
+    j2_min: Annotated[float, _angle(2, "smallest")] = -FURTHEST
+    j2_max: Annotated[float, _angle(2, "largest")] = FURTHEST
+    j3_min: Annotated[float, _angle(3, "smallest")] = -FURTHEST
+    j3_max: Annotated[float, _angle(3, "largest")] = FURTHEST
+    j4_min: Annotated[float, _angle(4, "smallest")] = -FURTHEST
+    j4_max: Annotated[float, _angle(4, "largest")] = FURTHEST
+    j5_min: Annotated[float, _angle(5, "smallest")] = -FURTHEST
+    j5_max: Annotated[float, _angle(5, "largest")] = FURTHEST
+    j6_min: Annotated[float, _angle(6, "smallest")] = -FURTHEST
+    j6_max: Annotated[float, _angle(6, "largest")] = FURTHEST
+
+
+class NormalLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The robot's limits in the safety mode NORMAL, as shipped the third of four presets (assets/limits/robot-limits.yaml)."""
+
+    BASIC = ("tool_speed", "elbow_speed", "tool_force", "elbow_force")
+
+    tool_speed: Speed = 1.5
+    elbow_speed: ElbowSpeed = 1.5
+    joint_speed: JointSpeed = 6.4832
+    tool_force: ToolForce = 150.0
+    elbow_force: ElbowForce = 150.0
+    momentum: Momentum = 25.0
+    power: Power = 300.0
+    stopping_time: StoppingTime = 0.4
+    stopping_distance: StoppingDistance = 0.5
+    positions: JointPositions = JointPositions()
+
+
+class ReducedLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The same in the safety mode REDUCED. What is larger than in NORMAL counts as equal to that."""
+
+    BASIC = ("tool_speed", "elbow_speed", "tool_force", "elbow_force")
+
+    tool_speed: Speed = 0.75
+    elbow_speed: ElbowSpeed = 0.75
+    joint_speed: JointSpeed = 6.4832
+    tool_force: ToolForce = 120.0
+    elbow_force: ElbowForce = 120.0
+    momentum: Momentum = 10.0
+    power: Power = 200.0
+    stopping_time: StoppingTime = 0.3
+    stopping_distance: StoppingDistance = 0.3
+    positions: JointPositions = JointPositions()
+
+
+class RobotLimitSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The robot's limits, for both safety modes."""
+
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("RL-4", "the robot's limits slow its motions down, and stop what exceeds them")] = True
+    transition: Annotated[float, _number(0.1, 1.0, "s", "RL-4", text="time in which the arm slows down when REDUCED begins")] = (
+        0.5
+    )
+    normal: NormalLimits = NormalLimits()
+    reduced: ReducedLimits = ReducedLimits()

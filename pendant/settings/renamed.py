@@ -26,5 +26,10 @@ RENAMED = {
     "contact.link_acceleration_noise": "contact.link_limit",
     "contact.link_force": "contact.link_limit",
     "contact.link_margin": "contact.link_limit",
+    "reduced.on": "robot_limits.on",
+    "reduced.tcp_speed": "robot_limits.reduced.tool_speed",
+    "reduced.elbow_speed": "robot_limits.reduced.elbow_speed",
+    "reduced.joint_speed": "robot_limits.reduced.joint_speed",
+    "reduced.transition": "robot_limits.transition",
 }
 """Old name -> name of now."""

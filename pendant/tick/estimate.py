@@ -53,6 +53,18 @@ NO_LINK_FORCE = LinkForce()
 """Nothing touches a link, as far as the joints feel."""
 
 
+class MotionMeasures(NamedTuple):
+    """What the robot's limits bound, beside speeds and angles (RL-4)."""
+
+    momentum: float = 0.0  # of links and payload, the size of the linear one [kg·m/s]
+    power: float = 0.0  # mechanical work a second on what the tool meets; none where that drives the arm [W]
+    stopping_time: float = 0.0  # until the arm rests, if it were stopped now [s]
+    stopping_distance: float = 0.0  # of tool or elbow until then [m]
+
+
+STANDS = MotionMeasures()
+
+
 class JointsFeel(IntEnum):
     """What explains the change of the external torques since free-drive began."""
 
@@ -93,6 +105,7 @@ class Estimate:
     move_wall: str = ""  # the area at whose border it has stopped that move
     following: FollowingError = ON_PATH  # of the arm against its reference
     link_force: LinkForce = NO_LINK_FORCE  # on a link; of what the flange carries, too, without a valid flange sensor
+    motion: MotionMeasures = STANDS
     clipped: bool = False  # the flange sensor's force is at the end of its range
     g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
     theta_dd: Array = field(default_factory=_no_joints)  # (n,) motor acceleration referred to the output [rad/s²]

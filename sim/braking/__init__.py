@@ -1,1 +1,1 @@
-"""The arm's own motions are braked before a border of the workspace. Uses rigid_body/."""
+"""The arm's own motions are braked before a border of the workspace. Uses compiled/, rigid_body/."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.limits.soft_limits import Damping
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
@@ -79,20 +79,20 @@ class ActiveDamping:
         self._limits[:] = math.inf
         self.help = 1.0
 
-    def add(self, estimate: Estimate, damping: Damping, reduced: SpeedLimits | None, *, jacobian: Array, torque: Array) -> None:
+    def add(self, estimate: Estimate, damping: Damping, limits: SpeedLimits | None, *, jacobian: Array, torque: Array) -> None:
         """Add the resistance to `torque` (n,) [N·m].
 
         Args:
             estimate: this tick's.
             damping: where it begins, and how strong it is.
-            reduced: limits that hold as well, in REDUCED.
+            limits: of the robot, which hold as well.
             jacobian: of the flange (6, n), linear first, axes of B.
         """
-        if damping is not self._asked[0] or reduced is not self._asked[1]:
-            self._asked = (damping, reduced)
+        if damping is not self._asked[0] or limits is not self._asked[1]:
+            self._asked = (damping, limits)
             self._how[:] = damping
-            if reduced is not None:
-                self._how[:3] = np.minimum(self._how[:3], reduced)
+            if limits is not None:
+                self._how[:3] = np.minimum(self._how[:3], limits[:3])
         moving = (estimate.theta_d, jacobian, estimate.p_BF, estimate.tcp, estimate.elbow)
         near = _resist(self._record, moving, torque)
         self.help += TICK / FADE * (1.0 - near - self.help)

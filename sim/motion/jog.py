@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from pendant.program.jog_move import TURNS, JogMove, MoveStraight, MoveThere
 from pendant.program.steps import Move
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.moves import MoveRefused, Reference, turning_points
-from sim.motion.pace import SHARE, Pace
+from sim.motion.pace import Pace
 from sim.motion.tool_trajectory import BEND, SPACING
 from sim.paths.curves import LEVER, NO_WAY, Straight
 from sim.paths.tool_point import Followed, ToolPoint
@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 
 MANUAL = 0.25
 """Of tool and elbow at most [m/s]: reduced speed of manual control (ISO 10218-1:2011, 5.7.3)."""
+
+PLANNED_SHARE = 0.85
+"""Of manual speed that a planned motion keeps below: what the measurement adds, and swinging, stays below it as well."""
 
 LINE_ACCELERATION, TURN_SPEED, TURN_ACCELERATION = 0.5, 0.5, 1.0
 """Of the tool [m/s²], [rad/s], [rad/s²]."""
@@ -39,14 +42,15 @@ HALVINGS = 20
 
 
 def at_manual_speed(move: Move | None, limits: SpeedLimits | None) -> SpeedLimits | None:
-    """The limits for a move: a button that is held allows manual speed at most, whatever REDUCED has."""
-    if not isinstance(move, MoveThere | MoveStraight):
-        return limits
-    return (
-        SpeedLimits(MANUAL, MANUAL, math.inf)
-        if limits is None
-        else SpeedLimits(min(MANUAL, limits.tcp), min(MANUAL, limits.elbow), limits.joint)
-    )
+    """The limits for a move: a button that is held allows manual speed at most, whatever the robot's limits are."""
+    return _slower(limits, PLANNED_SHARE * MANUAL) if isinstance(move, MoveThere | MoveStraight) else limits
+
+
+def _slower(limits: SpeedLimits | None, speed: float) -> SpeedLimits:
+    """The limits, and a speed for tool and elbow [m/s]."""
+    if limits is None:
+        return SpeedLimits(speed, speed, math.inf)
+    return limits._replace(tcp=min(speed, limits.tcp), elbow=min(speed, limits.elbow))
 
 
 class Places(NamedTuple):
@@ -116,7 +120,7 @@ class JogTrajectory:
 
         Args:
             share: of manual speed.
-            limits: of REDUCED.
+            limits: of the robot.
             keeper: of the arm that it leads; None: it leads none.
         """
         joints, s, (places, square, acceleration) = self._joints, self._s, self._places
@@ -126,7 +130,9 @@ class JogTrajectory:
         span = (places[k] - places[k - 1]).item()
         beyond = (s - places[k - 1].item()) / span if span > 0.0 else 1.0
         allowed = math.sqrt(max((square[k - 1] + beyond * (square[k] - square[k - 1])).item(), 0.0))
-        wanted = min(share * self._most, allowed, 1.0 / max(self._pace.over(joints.q, joints.rate, _manual(limits)), 1e-9))
+        wanted = min(
+            share * self._most, allowed, 1.0 / max(self._pace.meter.over(joints.q, joints.rate, _slower(limits, MANUAL)), 1e-9)
+        )
         change = min(acceleration[k - 1].item(), acceleration[k].item()) * TICK
         rate = min(max(wanted, self._rate - BRAKES * change), self._rate + change, left / TICK)
         if keeper is not None:
@@ -197,13 +203,6 @@ class JogTrajectory:
 
 def _ended(joint: int, q: float) -> str:
     return f"joint {joint + 1} is at the end of its range, {q:.3f} rad"
-
-
-def _manual(limits: SpeedLimits | None) -> SpeedLimits:
-    """Of tool, elbow and joints at most, in manual control."""
-    if limits is None:
-        return SpeedLimits(MANUAL, MANUAL, math.inf)
-    return SpeedLimits(min(MANUAL, SHARE * limits.tcp), min(MANUAL, SHARE * limits.elbow), SHARE * limits.joint)
 
 
 def _slowing(places: Places) -> Places:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pendant.haptics import Shake
 from pendant.tick.modes import TICK
+from sim.braking.motion_meter import Braking
 from sim.braking.stopping_distance import StoppingDistance
 from sim.paths.timing_law import MoveRefused
 from sim.paths.tool_point import Followed
@@ -94,6 +95,10 @@ class Strength(NamedTuple):
         """What it takes to come to rest."""
         dynamics, rotor, torque = self
         return StoppingDistance(lambda q, qd: stop_time(dynamics, q, qd, rotor=rotor, torque=torque), SHORTEST_STOP, REACTION)
+
+    def braking(self) -> Braking:
+        """What a stop plans with."""
+        return Braking(self.rotor, BRAKING_SHARE * self.torque, LEAST_BRAKING * self.torque, SHORTEST_STOP, REACTION)
 
     def broken(self, now: Reference, limits: tuple[Array, Array, Array], changing: Array) -> str:
         """Which limit joints that no reference leads have broken, or can no longer keep when they brake; "" for none.

@@ -1,19 +1,11 @@
-"""How fast a planned motion runs: slower in REDUCED, so that tool, elbow and joints stay below its limits (FD-1)."""
+"""How fast a planned motion runs: so slowly that it keeps all of the robot's limits (RL-4)."""
 
 import copy
 
-import numpy as np
-from numpy.typing import NDArray
-
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import TICK
+from sim.braking.motion_meter import MotionMeter
 from sim.motion.blend import Blended, Planned
-from sim.rigid_body.dynamics import Dynamics
-
-Array = NDArray[np.float64]
-
-SHARE = 0.85
-"""Of the limits: what the measurement adds, and the arm's swinging, stays below them as well."""
 
 RAMP = 0.25
 """Time in which the rate would go from full speed to none, or back [s]."""
@@ -21,25 +13,22 @@ RAMP = 0.25
 LOOKS = 60
 """Places of a motion that are looked at, about."""
 
-ASIDE = 1e-3
-"""Way of the motion over which a speed is measured [s]."""
-
 
 class Pace:
-    """The rate at which a motion's own time passes: 1, or in REDUCED the one that keeps all of its rest below the limits.
+    """The rate at which a motion's own time passes: 1, or less so that all of its rest keeps the limits.
 
     The rest of the motion is looked at once, when it begins or when the limits change; its path stays what it is.
 
     Args:
-        dynamics: the rigid model.
-        tcp: tool centre point in F (3,) [m].
+        meter: of the arm.
 
     Attributes:
+        meter: as given.
         rate: of this tick.
     """
 
-    def __init__(self, dynamics: Dynamics, tcp: Array) -> None:
-        self._dynamics, self._tcp = dynamics, tcp
+    def __init__(self, meter: MotionMeter) -> None:
+        self.meter = meter
         self._limits: SpeedLimits | None = None
         self._target = 1.0
         self.rate = 1.0
@@ -60,29 +49,14 @@ class Pace:
 
     def _look(self, motion: Planned | Blended, limits: SpeedLimits | None) -> None:
         self._limits = limits
-        self._target = 1.0 if limits is None else min(SHARE / max(self._worst(motion, limits), 1e-9), 1.0)
+        self._target = 1.0 if limits is None else 1.0 / max(self._worst(motion, limits), 1.0)
 
     def _worst(self, motion: Planned | Blended, limits: SpeedLimits) -> float:
-        """The largest speed of the rest of the motion at full rate, over its limit."""
+        """By what the speed of the motion must be divided so that all of its rest keeps the limits."""
         probe = copy.copy(motion)
         stride = max(1.0, motion.remaining / TICK / LOOKS)
         worst = 0.0
         while not probe.done:
             q, qd, _ = probe.step(stride)
-            worst = max(worst, self.over(q, qd / stride, limits))
+            worst = max(worst, self.meter.over(q, qd / stride, limits))
         return worst
-
-    def over(self, q: Array, qd: Array, limits: SpeedLimits) -> float:
-        """The largest speed of tool, elbow and joints at angles and speeds (n,), over its limit."""
-        tcp, elbow = self._places(q)
-        next_tcp, next_elbow = self._places(q + ASIDE * qd)
-        return max(
-            float(np.linalg.norm(next_tcp - tcp)) / ASIDE / limits.tcp,
-            float(np.linalg.norm(next_elbow - elbow)) / ASIDE / limits.elbow,
-            float(np.abs(qd).max()) / limits.joint,
-        )
-
-    def _places(self, q: Array) -> tuple[Array, Array]:
-        """Tool centre point and elbow (3,) in B [m]."""
-        p, R, elbow = self._dynamics.places(q)
-        return p + R @ self._tcp, elbow

@@ -11,6 +11,7 @@ from pendant.program.steps import Move, RunScript
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law
 from sim.arm.arm_file import Arm
+from sim.braking.motion_meter import MotionMeter
 from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.blend import Blended, Joined, Planned, leaves
 from sim.motion.compliance import Compliance, Displaced
@@ -49,6 +50,7 @@ class References:
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".
         keeper: keeps it in the workspace.
+        meter: measures motions against the robot's limits.
         commanding: in this tick the joints had torques that a script commands.
         push: torque (n,) with which the joints push against the outside as well [N·m], None for none.
     """
@@ -56,10 +58,11 @@ class References:
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
         self._dynamics, self._tool, self._R_FT = dynamics, ToolPoint(dynamics, tcp), R_FT
-        self._pace = Pace(dynamics, tcp)
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._strength = Strength(dynamics, self._rotor, self._torque)
+        self.meter = MotionMeter(dynamics, tcp, self._strength.braking())
+        self._pace = Pace(self.meter)
         self.keeper = WorkspaceKeeper(dynamics, tcp, R_FT, self._strength.stopping())
         self._planner = Planner(self._tool, R_FT, limits=self._limits, strength=self._strength, pace=self._pace)
         self._law: Law | None = None

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.motion.script_requests import ServoJoints, ServoTool, SpeedJoints, SpeedTool
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.arm.frames import cross, matrix_from_quaternion, rotation_vector
 from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.moves import DELAY, MoveRefused, Reference, check_range
-from sim.motion.pace import RAMP, SHARE, Pace
+from sim.motion.pace import RAMP, Pace
 from sim.paths.curves import LEVER
 from sim.paths.joint_speeds import BRAKING_SHARE, SLOWEST, shares, tick_later
 from sim.paths.tool_point import ToolPoint
@@ -48,7 +48,7 @@ class JointStream:
 
         Args:
             share: of its own speed.
-            limits: of REDUCED.
+            limits: of the robot.
             keeper: of the arm that it leads; None: it leads none.
         """
         self._left -= TICK
@@ -57,7 +57,7 @@ class JointStream:
         room, fast = shares(self._q, wanted, self._limits)
         allowed = min(room, self._share * fast, 1.0)
         if limits is not None and allowed > 0.0:
-            allowed = min(allowed, SHARE / max(self._pace.over(self._q, wanted, limits), 1e-9))
+            allowed = min(allowed, 1.0 / max(self._pace.meter.over(self._q, wanted, limits), 1.0))
         qd = allowed * wanted
         tick_later(self._q, self._qd, qd, self._limits)
         if keeper is not None:

@@ -15,12 +15,12 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.program.jog_move import JogMove
 from pendant.program.steps import JointMove, Program, Wait
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Law, Mode
 from pendant.tick.pose import Pose
 from pendant.tooling.arm_shape import ArmShape
-from pendant.tooling.turn_watch import JOLTED, STRUCK
+from pendant.tooling.turn_watch import JOLTED, SLOW_ELBOW, SLOW_JOINT, SLOW_TOOL, STRUCK
 from pendant.tooling.wrist_postures import SWING, WANTED
 from pendant.walls.definitions import Area
 from pendant.walls.shapes import HalfSpace, Sphere
@@ -147,18 +147,24 @@ def test_it_brakes_after_each_turn_and_settles_before_it_measures() -> None:
     assert cell.last.law is Law.HOLD
 
 
+REDUCED = SpeedLimits(0.75, 0.75, 6.4832, 10.0, 0.3, 0.3)
+
+
 def test_it_is_slow_and_slower_in_reduced() -> None:
     cell = Cell()
     cell.turning()
-    assert cell.last.speed_limits == SLOW
+    usual = cell.supervisor.settings.robot_limits.normal
+    assert cell.last.speed_limits is not None
+    assert cell.last.speed_limits == SLOW._replace(
+        momentum=usual.momentum, stopping_time=usual.stopping_time, stopping_distance=usual.stopping_distance
+    )
     cell.step(Inputs(commands=(Command.REDUCED_ON,)))
-    use = cell.supervisor.settings.reduced
-    expected = SpeedLimits(min(SLOW.tcp, use.tcp_speed), min(SLOW.elbow, use.elbow_speed), min(SLOW.joint, use.joint_speed))
-    assert cell.last.speed_limits == expected
+    assert cell.last.speed_limits == SpeedLimits(*map(min, SLOW, REDUCED))
     cell.step(CLEAR)
-    assert cell.last.speed_limits == SpeedLimits(use.tcp_speed, use.elbow_speed, use.joint_speed)
+    assert cell.last.speed_limits == REDUCED
     cell.step(Inputs(commands=(Command.REDUCED_OFF,)))
-    assert cell.last.speed_limits is None
+    assert cell.last.speed_limits is not None
+    assert cell.last.speed_limits.tcp == usual.tool_speed
 
 
 @pytest.mark.parametrize(
@@ -171,10 +177,10 @@ def test_it_is_slow_and_slower_in_reduced() -> None:
         (NOTHING, {"joints_valid": False}, "check joint encoders and motor currents"),
         (NOTHING, {"wrench_valid": False}, "the flange force sensor is not valid"),
         (NOTHING, {"move_refused": "beyond its range"}, "beyond its range"),
-        (NOTHING, {"v_tcp": SLOW.tcp + 0.01}, "faster than the wizard may move the arm"),
-        (NOTHING, {"v_elbow": SLOW.elbow + 0.01}, "faster than the wizard may move the arm"),
-        (NOTHING, {"qd": np.full(6, -SLOW.joint - 0.01)}, "faster than the wizard may move the arm"),
-        (NOTHING, {"v_tcp": math.nan}, "faster than the wizard may move the arm"),
+        (NOTHING, {"v_tcp": SLOW_TOOL + 0.01}, "faster than the wizard may move the arm"),
+        (NOTHING, {"v_elbow": SLOW_ELBOW + 0.01}, "faster than the wizard may move the arm"),
+        (NOTHING, {"qd": np.full(6, -SLOW_JOINT - 0.01)}, "faster than the wizard may move the arm"),
+        (NOTHING, {"v_tcp": math.nan}, "reset first"),
     ],
 )
 def test_what_ends_a_turn_and_the_arm_brakes(inputs: Inputs, changes: dict[str, object], reason: str) -> None:

@@ -24,6 +24,7 @@ EXAMPLE: Values = {
         "status": "too near",
     },
     "age": 15.0,
+    "position": True,
     "allowed": "TEACH, NORMAL",
     "category": 1,
     "cause": "emergency_stop",
@@ -119,11 +120,11 @@ EFFECTS = {
     Kind.MOTOR_ANGLE_LOST: Effect.PROTECTIVE_STOP,
     Kind.PATH_LEFT: Effect.PROTECTIVE_STOP,
     Kind.COLLISION: Effect.PROTECTIVE_STOP,
+    Kind.LIMIT_EXCEEDED: Effect.PROTECTIVE_STOP,
     Kind.EMERGENCY_STOP: Effect.EMERGENCY_STOP,
     Kind.PROTECTIVE_STOP: Effect.PROTECTIVE_STOP,
     Kind.POWERED_OFF: Effect.LEAVE_TO_STOP,
     Kind.SAFEGUARD_STOP: Effect.SAFEGUARD_STOP,
-    Kind.REDUCED_EXCEEDED: Effect.PROTECTIVE_STOP,
     Kind.REFUSED_ENABLING: Effect.NO_ENTRY,
     Kind.LEFT_ENABLING: Effect.LEAVE,
 }
@@ -157,7 +158,7 @@ def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> No
 def test_stop_categories_are_those_of_the_robots() -> None:
     """UR5e user manual, 8.2: an emergency stop removes the power at standstill, a safeguard stop leaves it on; beyond the
     limits of REDUCED is category 0."""
-    others = {Kind.EMERGENCY_STOP: 1, Kind.POWERED_OFF: 1, Kind.REDUCED_EXCEEDED: 0}
+    others = {Kind.EMERGENCY_STOP: 1, Kind.POWERED_OFF: 1}
     others |= {Kind.RUN_SENSORS_LOST: 0, Kind.MOTOR_ANGLE_LOST: 0}  # no loop holds such a joint
     assert {kind: row.category for kind, row in TABLE.items()} == {kind: others.get(kind, 2) for kind in Kind}
 

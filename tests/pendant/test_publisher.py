@@ -17,8 +17,8 @@ from pendant.motion.script_requests import Guided
 from pendant.motion.scripting import Scripting
 from pendant.program.steps import ProgramState, Wait
 from pendant.publisher import Publisher
-from pendant.robot.reduced import SpeedLimits
 from pendant.robot.robot_mode import Robot
+from pendant.safety.robot_limits import JointRange, SpeedLimits
 from pendant.sensor.taring import Taring
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.tick.pose import from_rpy
@@ -27,6 +27,7 @@ from pendant.walls.containment import Containment
 
 SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False, "program.speed": 0.4})
 SPEEDS = SpeedLimits(0.1, 0.2, 0.3)
+RANGE = JointRange((-1.0,), (2.0,))
 SHAKE = Shake(Pattern.ENTERED, 0.001, 0.2, 3.0)
 PERIODS = (Remaining("free-drive", 3, 7),)
 MOVE = Wait(duration=1.0, id=4)
@@ -79,7 +80,9 @@ class Parts:
             setattr(owner, name, value)
 
     def step(self, *events: Event, contacts: tuple[Contact, ...] = (), looks: bool = False) -> Decision:
-        return self.publisher.step(Law.FREE, list(events), contacts=contacts, looks=looks, speeds=SPEEDS, shake=SHAKE)
+        return self.publisher.step(
+            Law.FREE, list(events), contacts=contacts, looks=looks, speeds=SPEEDS, joint_range=RANGE, shake=SHAKE
+        )
 
     def expected(self, **changes: object) -> dict[str, object]:
         """Of a tick of held free-drive."""
@@ -88,7 +91,7 @@ class Parts:
             "force_cap": 70.0, "baseline": self.free.baseline, "periods": PERIODS, "events": (), "program": ProgramState.PAUSED,
             "step": 3, "monitored": (), "contacts": (), "looks": False, "tool_on": True, "outputs": frozenset({3}),
             "walls": ("wall",), "grip": "in the middle",
-            "workspace": ("workspace", self.settings.walls), "speed_limits": SPEEDS,
+            "workspace": ("workspace", self.settings.walls), "speed_limits": SPEEDS, "joint_range": RANGE,
             "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "reading_zero": (0.3,) * 6, "zero_due": False,

@@ -9,6 +9,8 @@ from pendant.program.steps import Move
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from sim.arm.chain import Body, chain
+from sim.braking.motion_meter import MotionMeter
+from sim.motion.moves import Strength
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import nominal
 from tests.sim.arms import UR5E
@@ -24,6 +26,12 @@ def dynamics(q: np.ndarray | None = None) -> Dynamics:
     model = Dynamics(rigid, rigid.links, NOTHING, mounting=[0.0, 0.0, 0.0], elbow=UR5E.chain.elbow)
     model.recursion.run(np.zeros(N) if q is None else q, np.zeros((3, N)), np.zeros(3))  # as the estimator does in every tick
     return model
+
+
+def meter(model: Dynamics, tcp: np.ndarray) -> MotionMeter:
+    """Measures motions of that arm."""
+    strength = Strength(model, np.array(UR5E.motors.rotor_inertia), np.array(UR5E.limits.torque))
+    return MotionMeter(model, tcp, strength.braking())
 
 
 def estimate(**values: Any) -> Estimate:

@@ -111,7 +111,7 @@ def test_limits_that_the_program_does_not_keep_end_it_and_the_arm_brakes(
 def test_what_is_too_fast_in_reduced_is_a_protective_stop(bench: Torques) -> None:
     bench.robot.step(300, inputs=Inputs(commands=(Command.REDUCED_ON,)))
     bench.follow("[60,0,0,0,0,0]", 500)
-    assert Kind.REDUCED_EXCEEDED in [event.kind for event in bench.robot.watcher.events]
+    assert Kind.LIMIT_EXCEEDED in [event.kind for event in bench.robot.watcher.events]
     assert bench.state is None
 
 

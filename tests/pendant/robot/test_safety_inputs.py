@@ -6,8 +6,8 @@ import pytest
 
 from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Button, Command, Inputs
-from pendant.robot.reduced import SpeedLimits
 from pendant.robot.safety_inputs import SafetyInputs
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.tick.state import state_of
@@ -52,7 +52,7 @@ def test_each_change_of_a_level_is_told_once(ticks: list[tuple[Command, ...]], k
 
 def levels(safety: SafetyInputs) -> tuple[object, ...]:
     """What it remembers besides the robot."""
-    return (state_of(safety._reduced), safety._safeguard)
+    return (state_of(safety._limits), safety._safeguard)
 
 
 def test_a_safeguard_that_is_closed_is_as_before_it_was_opened() -> None:
@@ -112,14 +112,22 @@ def test_a_reset_leads_to_the_safety_mode_that_the_inputs_ask_for(levels: tuple[
 
 def test_what_is_too_fast_for_reduced_is_stopped_once() -> None:
     """FD-1: 0.5 s of grace are 250 ticks; what goes on in STOP is the stop's to brake."""
-    bench, fast = resting(), estimate(v_tcp=0.4)
+    bench, fast = resting(), estimate(v_tcp=0.9)
     bench.step(Inputs(commands=(ON,)))
-    assert bench.last.speed_limits == SpeedLimits(0.25, 0.25, 1.0)
+    assert bench.last.speed_limits == SpeedLimits(0.75, 0.75, 6.4832, 10.0, 0.3, 0.3)
     bench.events.clear()
     assert bench.run(249, NOTHING, fast).mode is Mode.TEACH
     bench.run(20, NOTHING, fast)
-    values = {"parameter": "tcp speed", "part": "tcp", "value": 0.4, "limit": 0.25, "unit": "m/s"}
-    assert bench.events == [Event(Kind.REDUCED_EXCEEDED, 310, values)]
+    values = {
+        "parameter": "tool speed",
+        "part": "tool",
+        "value": 0.9,
+        "limit": 0.75,
+        "unit": "m/s",
+        "mode": "REDUCED",
+        "position": False,
+    }
+    assert bench.events == [Event(Kind.LIMIT_EXCEEDED, 310, values)]
     assert (bench.last.mode, bench.last.safety) == (Mode.STOP, Safety.PROTECTIVE_STOP)
 
 
@@ -130,7 +138,7 @@ def test_where_no_joint_can_be_told_nothing_is_too_fast(value: Estimate) -> None
     told(bench, ON)
     bench.run(300)
     bench.step(NOTHING, value)
-    assert Kind.REDUCED_EXCEEDED not in [event.kind for event in bench.last.events]
+    assert Kind.LIMIT_EXCEEDED not in [event.kind for event in bench.last.events]
     assert bench.last.mode is Mode.TEACH
 
 

@@ -94,7 +94,7 @@ def test_a_harder_stop_on_top_counts_as_one_stop_of_the_first_cause() -> None:
     stopping.step(MOVING, 0, 50)
     stopping.begin(Kind.EMERGENCY_STOP, 1, False)
     assert not stopping.off
-    stopping.begin(Kind.REDUCED_EXCEEDED, 0, False)
+    stopping.begin(Kind.MOTOR_ANGLE_LOST, 0, False)
     assert stopping.off
     (event,) = stopping.step(estimate(), 50, 50)
     assert event.values == {"time": 0.0, "distance": pytest.approx(0.0005), "category": 0, "cause": "safeguard_stop"}

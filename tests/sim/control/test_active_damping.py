@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING
 from pendant.limits.soft_limits import Damping
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import Mode
 from sim.arm.frames import joint_frames
 from sim.control.active_damping import FADE, FALL, STEEPEST_JOINT, STEEPEST_TCP, ActiveDamping

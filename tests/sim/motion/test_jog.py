@@ -6,17 +6,17 @@ import pytest
 from pendant.events.event import Event, Kind
 from pendant.inputs import Inputs
 from pendant.program.jog_move import JogMove, MoveStraight, MoveThere
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.arm.frames import quaternion_from_matrix
 from sim.exchange.desk import Wishes
-from sim.motion.jog import JOINT_SHARE, MANUAL, JogTrajectory, at_manual_speed
+from sim.motion.jog import JOINT_SHARE, MANUAL, PLANNED_SHARE, JogTrajectory, at_manual_speed
 from sim.motion.moves import MoveRefused
 from sim.motion.pace import Pace
 from sim.paths.tool_point import ToolPoint
 from tests.sim.arms import UR5E
 from tests.sim.bench import Bench
-from tests.sim.laws import dynamics
+from tests.sim.laws import dynamics, meter
 
 HOME = np.array(UR5E.chain.home)
 MODEL = dynamics()
@@ -26,7 +26,7 @@ LIMITS = (np.array(UR5E.limits.speed), np.array(UR5E.limits.acceleration), np.ar
 
 def jog(frame: str, axis: int, sign: int, length: float = 0.0, q: np.ndarray = HOME) -> JogTrajectory:
     move = JogMove(id=-1, frame=frame, axis=axis, sign=sign, length=length)  # type: ignore[arg-type]
-    return JogTrajectory(q, move, ToolPoint(MODEL, TCP), R_FT=np.eye(3), limits=LIMITS, pace=Pace(MODEL, TCP))
+    return JogTrajectory(q, move, ToolPoint(MODEL, TCP), R_FT=np.eye(3), limits=LIMITS, pace=Pace(meter(MODEL, TCP)))
 
 
 def tool(q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -84,7 +84,7 @@ def test_in_reduced_tool_elbow_and_joints_stay_below_its_limits() -> None:
     for _ in range(300):
         now = motion.step(1.0, limits)
         speed = float(np.linalg.norm(tool(now.q)[0] - tool(now.q - TICK * now.qd)[0])) / TICK
-        assert speed <= limits.tcp
+        assert speed <= 1.001 * limits.tcp
     assert speed > 0.05
 
 
@@ -150,8 +150,8 @@ def test_letting_go_on_the_way_to_a_posture_stops_the_arm() -> None:
 
 
 def test_reduced_mode_is_slower_than_manual_speed_where_it_asks_for_that() -> None:
-    assert at_manual_speed(there(HOME), None) == SpeedLimits(MANUAL, MANUAL, np.inf)
-    assert at_manual_speed(there(HOME), SpeedLimits(0.1, 0.5, 0.3)) == SpeedLimits(0.1, MANUAL, 0.3)
+    assert at_manual_speed(there(HOME), None) == SpeedLimits(PLANNED_SHARE * MANUAL, PLANNED_SHARE * MANUAL, np.inf)
+    assert at_manual_speed(there(HOME), SpeedLimits(0.1, 0.5, 0.3)) == SpeedLimits(0.1, PLANNED_SHARE * MANUAL, 0.3)
     assert at_manual_speed(None, None) is None
 
 

@@ -30,10 +30,11 @@ from sim.motion.streams import ServoStream, SpeedStream, ToolStream
 from sim.motion.tool_trajectory import ToolTrajectory
 from sim.paths.tool_point import ToolPoint
 from tests.sim.arms import UR5E
+from tests.sim.laws import meter
 from tests.sim.motion.test_moves import HOME, LIMITS, TCP, model, tool
 
 STRENGTH = Strength(model(), np.array(UR5E.motors.rotor_inertia), np.array(UR5E.limits.torque))
-PLANNER = Planner(ToolPoint(model(), TCP), np.eye(3), limits=LIMITS, strength=STRENGTH, pace=Pace(model(), TCP))
+PLANNER = Planner(ToolPoint(model(), TCP), np.eye(3), limits=LIMITS, strength=STRENGTH, pace=Pace(meter(model(), TCP)))
 ZERO = np.zeros(6)
 REST = Reference(HOME, ZERO, ZERO)
 MOVING = Reference(HOME, np.array([0.5, 0.1, 0.0, 0.0, 0.0, 0.0]), ZERO)

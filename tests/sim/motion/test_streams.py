@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 
 from pendant.motion.script_requests import ServoJoints, ServoTool, SpeedJoints, SpeedTool
-from pendant.robot.reduced import SpeedLimits
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.motion.moves import DELAY, MoveRefused, Reference
 from sim.motion.pace import Pace
 from sim.motion.streams import GRACE, JointStream, ServoStream, SpeedStream, ToolStream
 from sim.paths.tool_point import ToolPoint
+from tests.sim.laws import meter
 from tests.sim.motion.test_moves import ACCELERATION, HOME, LIMITS, POSITION, SPEED, TCP, model, tool
 
 MODEL = model()
-PACE = Pace(MODEL, TCP)
+PACE = Pace(meter(MODEL, TCP))
 REST = Reference(HOME, np.zeros(6), np.zeros(6))
 
 

@@ -142,8 +142,10 @@ def test_the_safety_page_has_a_dozen_values_that_people_know(served: Served, joi
     tab = served.docks.settings
     assert set(tab.controls) == set(SAFETY)
     assert len(SAFETY) <= 12
-    client.set(tab.controls["reduced.tcp_speed"]._impl.uuid, value=0.1)
-    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"reduced.tcp_speed": 0.1}, "the wish")
+    client.set(tab.controls["robot_limits.reduced.tool_speed"]._impl.uuid, value=0.1)
+    until(
+        lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"robot_limits.reduced.tool_speed": 0.1}, "the wish"
+    )
 
 
 def test_what_is_typed_counts_when_it_is_all_typed(served: Served, join: Join, loop: FakeLoop) -> None:

@@ -36,7 +36,14 @@ def test_the_cautious_preset_is_nowhere_faster_or_stronger() -> None:
 
 def test_what_protects_stays_on_in_every_preset() -> None:
     for preset in presets().values():
-        for name in ("walls.on", "joint_limits.on", "sequence.on", "unexplained.motion", "unexplained.payload", "reduced.on"):
+        for name in (
+            "walls.on",
+            "joint_limits.on",
+            "sequence.on",
+            "unexplained.motion",
+            "unexplained.payload",
+            "robot_limits.on",
+        ):
             assert value_of(preset.whole, name) is True, (preset.title, name)
 
 
