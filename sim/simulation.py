@@ -81,9 +81,6 @@ class Simulation:
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         self.estimator.set_load(self._before, load_body(scenario.payload_configured))
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, arm.sensors, self.estimator.momentum)
-        self.watch = ArmWatch(
-            self.dynamics, self.estimator.momentum, arm.sensors, arm.chain.elbow, following=following_limit(arm)
-        )
         self.supervisor = Supervisor(
             settings,
             arm.n,
@@ -100,6 +97,14 @@ class Simulation:
         self.zero, self._zero = self.supervisor.zero, None  # until the sensor is zeroed
         self.fitting = self.supervisor.fitting
         self.controller = Controller(arm, self.calibration, self.dynamics, tcp=self.tcp, R_FT=self.R_FT)
+        self.watch = ArmWatch(
+            self.dynamics,
+            self.estimator.momentum,
+            arm.sensors,
+            arm.chain.elbow,
+            meter=self.controller.references.meter,
+            following=following_limit(arm),
+        )
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self.current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self.current)  # as it comes one tick late: what the first tick will know
@@ -167,12 +172,11 @@ class Simulation:
         answered = references.answered
         estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
-        estimate.motion = references.meter.measure(estimate.qd, estimate.F_user)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
-            self.watch.rest(estimate)
-        else:
-            self.watch.read(sample, estimate, None if answered is None or not estimator.started else answered.q)
+        self.watch.read(
+            sample, estimate, answered.q if answered is not None and estimator.started else None, free=before is _FREE
+        )
         decision = supervisor.step(estimate, wishes.inputs)
         friction, stiffer = estimator.friction, estimator.transmission.stiffer
         self.current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)

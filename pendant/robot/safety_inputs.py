@@ -3,7 +3,7 @@
 from pendant.all_settings import Settings
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command
-from pendant.limits.validity import JOINTS_SENSED, joints_ok
+from pendant.limits.validity import JOINTS_SENSED, joints_ok, motion_ok
 from pendant.robot.robot_mode import Robot
 from pendant.safety.collision import Collisions
 from pendant.safety.following import left_path
@@ -85,8 +85,10 @@ class SafetyInputs:
             self._limits.rest()
             return
         stop = hit or self._left_path(estimate, settings)
-        if stop is None and (estimate.joints_valid or estimate.degraded):
+        if stop is None:
             stop = self._limits.step(estimate, settings.robot_limits, moves=robot.move is not None)
+            if stop is not None and not motion_ok(estimate):
+                return  # lost sensors are told by themselves
         if stop is not None:
             robot.happen(stop, settings, events)
 

@@ -180,7 +180,9 @@ class LimitWatch:
             return _told(estimate, limits, Excess("tool speed", "tool", estimate.v_tcp, speeds.tcp, "m/s"))
         if not estimate.v_elbow <= speeds.elbow + SPEED_TOLERANCE:
             return _told(estimate, limits, Excess("elbow speed", "elbow", estimate.v_elbow, speeds.elbow, "m/s"))
-        for joint, (speed, most) in enumerate(zip(estimate.qd.tolist(), limits.joint_speeds, strict=True)):
+        qd = estimate.qd.tolist()
+        slow = sum(map(abs, qd)) <= min(limits.joint_speeds)  # in one go, as it mostly is
+        for joint, (speed, most) in enumerate(() if slow else zip(qd, limits.joint_speeds, strict=True)):
             if not -most <= speed <= most:
                 told = "joint speed", self._arm.names[joint], abs(speed), most - JOINT_SPEED_TOLERANCE, "rad/s"
                 return _told(estimate, limits, Excess(*told))

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.safety.robot_limits import SpeedLimits
-from pendant.tick.estimate import MotionMeasures
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.rigid_body.dynamics import Dynamics
@@ -41,12 +40,15 @@ class MotionMeter:
         dynamics: the rigid model, with the load that is configured.
         tcp: tool centre point in F (3,) [m]; what it holds may change.
         braking: of the arm.
+
+    Attributes:
+        record: what the kernels need.
     """
 
     def __init__(self, dynamics: Dynamics, tcp: Array, braking: Braking) -> None:
         n = braking.rotor.size
         self._rigid, self._tcp = dynamics.recursion.record, tcp
-        self._record = record(
+        self.record = record(
             rotor=(n,),
             torque=(n,),
             least=(n,),
@@ -60,7 +62,7 @@ class MotionMeter:
             angular=(n, 3),
             heavy=(n, 3),
         )
-        own = self._record[0]
+        own = self.record[0]
         own["rotor"], own["torque"], own["least"] = braking.rotor, braking.torque, braking.least
         own["shortest"], own["reaction"] = braking.shortest, braking.reaction
         self._bounds = own["limits"]
@@ -71,21 +73,19 @@ class MotionMeter:
         if limits is not self._limits:
             self._limits = limits
             self._bounds[:] = limits
-        return _over(self._record, self._rigid, (q, qd), self._tcp)
-
-    def measure(self, qd: Array, wrench: Array) -> MotionMeasures:
-        """Of the arm as the rigid model's recursion was run in this tick.
-
-        Args:
-            qd: speeds of the joints, with which it was run (n,) [rad/s].
-            wrench: of the outside on the flange (6,), axes of B [N, N·m].
-        """
-        return MotionMeasures(*_measure(self._record, self._rigid, qd, wrench))
+        return _over(self.record, self._rigid, (q, qd), self._tcp)
 
 
 @kernel
-def _measure(record, rigid, qd, wrench):
-    """As `MotionMeasures`."""
+def measure(record, rigid, qd, wrench):
+    """What `MotionMeasures` has, of the arm as the rigid model's recursion was run in this tick.
+
+    Args:
+        record: of a `MotionMeter`.
+        rigid: of the recursion.
+        qd: speeds of the joints, with which it was run (n,) [rad/s].
+        wrench: of the outside on the flange (6,), axes of B [N, N·m].
+    """
     own, model = record[0], rigid[0]
     momentum, seconds = _momentum(own, model, (model.origins, model.turns), qd)
     power = 0.0

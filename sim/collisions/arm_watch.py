@@ -1,6 +1,6 @@
-"""What may stop an arm that moves by itself: a force on a link, and how far it is from its reference (RL-1, RL-3).
+"""What may stop an arm: a force on a link, how far it is from its reference, and how it moves (RL-1, RL-3, RL-4).
 
-Both in one kernel: to call one takes as long as all that it does here.
+All in one kernel: to call one takes as long as all that it does here.
 """
 
 import math
@@ -8,8 +8,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.tick.estimate import NO_LINK_FORCE, ON_PATH, Estimate, FollowingError, LinkForce
+from pendant.tick.estimate import NO_LINK_FORCE, ON_PATH, Estimate, FollowingError, LinkForce, MotionMeasures
 from sim.arm.arm_file import SensorNumbers
+from sim.braking.motion_meter import MotionMeter, measure
 from sim.collisions.link_force import link_force
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
@@ -23,22 +24,31 @@ END = 0.95  # share of the flange sensor's range from which its value may be les
 
 
 class ArmWatch:
-    """Watches what the joints feel that the flange sensor does not, without it all of it, and whether the arm is on its path.
+    """Watches what the joints feel that the flange sensor does not, without it all of it, whether the arm is on its path, and
+    what the robot's limits bound of its motion.
 
     Args:
         dynamics: the controller's rigid model, whose recursion has been run in this tick.
         momentum: external torques of this tick.
         sensors: of the arm, with their ranges.
         elbow: index of the joint whose origin is the elbow.
+        meter: of the arm's motion.
         following: largest error of the joints against their reference (n,) [rad].
     """
 
     def __init__(
-        self, dynamics: Dynamics, momentum: MomentumObserver, sensors: SensorNumbers, elbow: int, *, following: Array
+        self,
+        dynamics: Dynamics,
+        momentum: MomentumObserver,
+        sensors: SensorNumbers,
+        elbow: int,
+        *,
+        meter: MotionMeter,
+        following: Array,
     ) -> None:
         self._momentum, self._elbow = momentum, elbow
         self._own = record(range=(6,), zero=(6,), following=(following.size,))
-        self._models = self._own, dynamics.recursion.record, momentum.record, momentum.errors.record
+        self._models = self._own, meter.record, dynamics.recursion.record, momentum.record, momentum.errors.record
         own, flange = self._own[0], sensors.force_torque
         own["range"], own["following"] = np.inf, following
         if flange is not None:
@@ -48,39 +58,38 @@ class ArmWatch:
         """So much (6,) is subtracted from the flange sensor's values [N, N·m]."""
         self._own[0]["zero"] = zero
 
-    @staticmethod
-    def rest(estimate: Estimate) -> None:
-        """A tick of free-drive, in which a hand may push at any link: nothing is told."""
-        estimate.clipped, estimate.link_force, estimate.following = False, NO_LINK_FORCE, ON_PATH
-
-    def read(self, sample: Sample, estimate: Estimate, wanted: Array | None) -> None:
-        """Put this tick's force and following error into `estimate`; no force while the observer has just begun, for it may be
-        an error.
+    def read(self, sample: Sample, estimate: Estimate, wanted: Array | None, *, free: bool) -> None:
+        """Put what is watched into `estimate`; no force in free-drive, where a hand may push at any link, nor while the observer
+        has just begun, for it may be an error.
 
         Args:
             sample: this tick's measurements, of which the zero has been taken.
             estimate: this tick's estimate.
             wanted: angles of the reference that this measurement answers to (n,) [rad]; None: nothing says where it should be.
+            free: the arm is in free-drive.
         """
-        feels, q = self._momentum.ready, estimate.q
-        force, clipped, error = _watch(self._models, (self._elbow, feels), (sample.wrench, q, q if wanted is None else wanted))
+        feels, q = self._momentum.ready and not free, estimate.q
+        felt = (sample.wrench, estimate.F_user, q, q if wanted is None else wanted, estimate.qd)
+        force, clipped, error, motion = _watch(self._models, (self._elbow, feels), felt)
         estimate.clipped = clipped and sample.wrench_valid
         estimate.link_force = NO_LINK_FORCE if force[0] < 0 else LinkForce(*force)
         estimate.following = ON_PATH if wanted is None else FollowingError(*error)
+        estimate.motion = MotionMeasures(*motion)
 
 
 @kernel
 def _watch(models, state, felt):
-    """Force on a link, whether the flange sensor is at the end of its range, and the following error."""
+    """Force on a link, whether the flange sensor is at the end of its range, the following error, and the motion."""
     elbow, feels = state
-    wrench, q, wanted = felt
-    own, rigid = models[0][0], models[1][0]
+    sensed, outside, q, wanted, qd = felt
+    own, rigid = models[0][0], models[2][0]
     force, clipped = (-1, 0.0, 0.0, 0), False
     if feels:
-        force = link_force(models[1:], elbow)
+        force = link_force(models[2:], elbow)
         for k in range(6):
-            clipped |= abs(wrench[k] + own.zero[k]) >= own.range[k]
-    return force, clipped, _following_error(own.following, wanted, q, (rigid.jacobian, rigid.p, rigid.tcp))
+            clipped |= abs(sensed[k] + own.zero[k]) >= own.range[k]
+    error = _following_error(own.following, wanted, q, (rigid.jacobian, rigid.p, rigid.tcp))
+    return force, clipped, error, measure(models[1], models[2], qd, outside)
 
 
 @kernel
