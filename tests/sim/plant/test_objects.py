@@ -155,7 +155,7 @@ def test_half_the_step_leaves_contact_onset_as_it_is() -> None:
 
 
 def test_contact_force_and_acceleration_are_opposite_with_the_arms_effective_mass() -> None:
-    """CD-0, docs/explanation/contact.md: ratio = - effective mass of the arm behind the sensor, the rotors decoupled by the springs."""
+    """CD-0, docs/explanation/contact.md: ratio = - effective mass of the arm behind the sensor; springs decouple the rotors."""
     rigid = chain(UR5E)
     touching, free = (approach([below(0.001, BoxObject, stiffness=2e4)]), approach([]))
     normal = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
