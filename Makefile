@@ -11,6 +11,7 @@
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
 #   make claims      every claim with its switch and its mutants, into out/claims; 25 minutes at most on two cores
+#   make docs        the pages that programs write; those that are too long to keep are in out/docs
 #   make fuzz        files and messages drawn from their types, and damaged ones, for an hour on all cores (tools/fuzz)
 #   make clean       remove what the above made
 
@@ -35,7 +36,7 @@ BENCHES := $(filter-out __init__ arms common network_clients postures viewer,$(b
 unexport PYTHONDONTWRITEBYTECODE
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full races races-full soak soak-quick mutate claims fuzz clean lint types contracts kernels wheel browser pictures
+.PHONY: run test bench bench-full races races-full soak soak-quick mutate claims docs fuzz clean lint types contracts kernels wheel browser pictures
 .PHONY: paced computing pushed e2e e2e-full
 
 run: $(VENV)/run.stamp
@@ -160,6 +161,9 @@ mutate: $(VENV)/dev.stamp
 
 claims: $(VENV)/dev.stamp kernels
 	$(BIN)/pendant claims --mutants --out out/claims
+
+docs: $(VENV)/dev.stamp
+	@for page in modules reactions traceability claims_page; do $(BIN)/python -m tools.$$page || exit 1; done
 
 fuzz: $(VENV)/dev.stamp
 	$(BIN)/python -m tools.fuzz --seconds 3600 --seed $(SEED)

@@ -1,53 +1,131 @@
-"""Writes docs/reference/claims.md: each claim, its session, its mutants, and what was seen. Run: `python -m tools.claims_page`.
+"""Writes docs/reference/claims.md, a row a claim, and out/docs/claims.md, with all that was expected and seen.
 
-What was seen is what `make claims` has written last: `python -m tools.claims_page FILE`, given its claims.json, takes that over.
+Run: `python -m tools.claims_page`. Given the claims.json that `make claims` wrote last, it takes over first what that run showed.
 """
 
+import csv
+import hashlib
 import sys
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 
 from app.runs.claim_mutants import Mutant, declared
 from app.runs.coverage import claiming
-from app.session.claims import CLAIMS, Claim
+from app.session.claims import CLAIMS
 from app.session.measures import watch
 from app.session.prepare import prepare
 from app.session.session_file import Session
 
 ROOT = Path(__file__).parents[1]
-PAGE, SEEN = ROOT / "docs/reference/claims.md", ROOT / "docs/results/claims.json"
+PAGE, SHOWN = ROOT / "docs/reference/claims.md", ROOT / "docs/results/claims.csv"
+LONG, RUN = ROOT / "out/docs/claims.md", ROOT / "out/claims/claims.json"
 
 HEAD = """# Claims
 
-Written by `python -m tools.claims_page`. A claim is shown where its session meets what it expects, and does not with its
-switch off, nor with any of its mutants: the smallest changes of code that take away what the claim says (`assets/mutants/`).
-Behind each mutant stands the expectation that is not met with it, and what was seen in the last `make claims`. A row says `yes`
-in its last column if all of that was seen then, and `not run` where something of it is newer.
+Written by `python -m tools.claims_page` from the sessions, the mutants and [claims.csv](../results/claims.csv). A claim is
+shown where its session (`assets/sessions/`) meets what it expects, and does not with its switch off, nor with any of its
+mutants: the smallest changes of code that take away what the claim says (`assets/mutants/`). `yes`: the last `make claims`
+saw all of that. `not run`: seed, expectations or mutants are newer than it. `make docs` writes the long page,
+`out/docs/claims.md`: what each session expects, each mutant, and what was seen.
 
+| claim | to show | ids | sessions: seed, mutants, shown |
+|---|---|---|---|
+"""
+
+LONG_HEAD = """# Claims, with all that is expected and was seen
+
+| claim | session | switch | it expects | mutants, and what was seen | shown |
+|---|---|---|---|---|---|
 """
 
 NOT_RUN = "not run"
 
+Row = dict[str, Any]
+"""Of claims.json: a claim and a session, what was expected, and what was seen, with and without each mutant."""
 
-def page() -> str:
-    """The page."""
+
+class Seen(NamedTuple):
+    """A row of claims.csv: what the last run says of a claim and a session."""
+
+    claim: str
+    session: str
+    seed: int
+    mutants: int
+    shown: str  # "yes" or "no"
+    of: str  # digest of what ran
+
+
+def digest(seed: int, checks: Iterable[str], mutants: Iterable[tuple[str, str]]) -> str:
+    """Of what a row runs: the seed, what is expected in words, and each mutant in words with its file. 12 hexadecimal digits."""
+    return hashlib.sha256(msgspec.json.encode([seed, list(checks), sorted(mutants)])).hexdigest()[:12]
+
+
+def seen_in(rows: Iterable[Row]) -> list[Seen]:
+    """The rows of claims.json in short; a claim that no session shows has none."""
+    found: list[Seen] = []
+    for row in rows:
+        if row["session"] is not None:
+            tried = [(mutant["what"], mutant["file"]) for mutant in row["mutants"]]
+            noticed = all(mutant["noticed"] for mutant in row["mutants"])
+            shown = "yes" if row["passed"] and row["failed_when_off"] and noticed else "no"
+            of = digest(row["seed"], row["checks"], tried)
+            found.append(Seen(row["name"], row["session"], row["seed"], len(tried), shown, of))
+    return found
+
+
+def read_seen(path: Path = SHOWN) -> dict[tuple[str, str], Seen]:
+    """claims.csv, by claim and session."""
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = [
+            Seen(r["claim"], r["session"], int(r["seed"]), int(r["mutants"]), r["shown"], r["of"]) for r in csv.DictReader(file)
+        ]
+    return {(row.claim, row.session): row for row in rows}
+
+
+def write_seen(rows: Iterable[Seen], path: Path = SHOWN) -> None:
+    """Write claims.csv."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(Seen._fields)
+        writer.writerows(rows)
+
+
+class Expected(NamedTuple):
+    """What shows a claim."""
+
+    claim: str
+    session: str
+    seed: int
+    switch: str
+    checks: list[str]
+    mutants: list[Mutant]
+
+    @property
+    def of(self) -> str:
+        """See `digest`."""
+        return digest(self.seed, self.checks, [(mutant.what, mutant.file) for mutant in self.mutants])
+
+
+def expected() -> list[Expected]:
+    """What shows each claim, in the order of the claims."""
     sessions, mutants = claiming(), declared()
-    expected = {name: checks(session, name) for name, session in sessions.items()}
-    rows: list[dict[str, Any]] = msgspec.json.decode(SEEN.read_bytes())
-    seen: dict[tuple[str, str], dict[str, Any]] = {(row["name"], row["session"]): row for row in rows}
-    lines = [
-        "| claim | to show | ids | session | it expects | switch | mutants, and what was seen | shown |",
-        "|---|---|---|---|---|---|---|---|",
+    words = {name: checks(session, name) for name, session in sessions.items()}
+    return [
+        Expected(
+            claim,
+            name,
+            session.seed,
+            session.switch or "",
+            words[name],
+            [mutant for mutant in mutants if mutant.session == name and claim in mutant.claims],
+        )
+        for claim in CLAIMS
+        for name, session in sessions.items()
+        if claim in session.claims
     ]
-    for claim in CLAIMS.values():
-        for name, session in sessions.items():
-            if claim.name in session.claims:
-                own = [mutant for mutant in mutants if mutant.session == name and claim.name in mutant.claims]
-                row = seen.get((claim.name, name))
-                lines.append(_row(claim, name, expected[name], switch=session.switch, mutants=own, row=row))
-    return HEAD + "\n".join(lines) + "\n"
 
 
 def checks(session: Session, name: str) -> list[str]:
@@ -56,31 +134,57 @@ def checks(session: Session, name: str) -> list[str]:
     return [watch(expectation, joints).expected() for expectation in session.expectations]
 
 
-def _row(
-    claim: Claim, name: str, checks: list[str], *, switch: str | None, mutants: list[Mutant], row: dict[str, Any] | None
-) -> str:
-    link = f"[{name}](../../assets/sessions/{name}.yaml)"
-    tried: list[dict[str, Any]] = [] if row is None else row["mutants"]
-    seen: dict[tuple[str, str], Any] = {(mutant["what"], mutant["file"]): mutant for mutant in tried}
-    told = [_told(mutant, seen.get((mutant.what, mutant.file))) for mutant in mutants]
-    cells = [claim.name, claim.text, claim.ids, link, "<br>".join(checks), switch or "-", "<br>".join(told) or "-"]
-    cells.append(_shown(mutants, row, seen, checks))
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+def shown(each: Expected, seen: Seen | None) -> str:
+    """Whether a run has shown it as it is now."""
+    return NOT_RUN if seen is None or seen.of != each.of else seen.shown
 
 
-def _told(mutant: Mutant, seen: dict[str, Any] | None) -> str:
+def page(wanted: list[Expected], seen: dict[tuple[str, str], Seen]) -> str:
+    """The page of the claims, a row each."""
+    lines: list[str] = []
+    for claim in CLAIMS.values():
+        own = [each for each in wanted if each.claim == claim.name]
+        told = [
+            f"`{each.session}`: {each.seed}, {len(each.mutants)}, {shown(each, seen.get((each.claim, each.session)))}"
+            for each in own
+        ]
+        lines.append(_line([claim.name, claim.text, claim.ids, "<br>".join(told) or "none"]))
+    return HEAD + "\n".join(lines) + "\n"
+
+
+def long_page(wanted: list[Expected], seen: dict[tuple[str, str], Seen], rows: Iterable[Row]) -> str:
+    """The page with all that is expected and was seen; `rows` are of the run that is at hand, maybe none."""
+    run = {(row["name"], row["session"]): row for row in rows}
+    lines: list[str] = []
+    for each in wanted:
+        row = run.get((each.claim, each.session))
+        tried: dict[tuple[str, str], Row] = {} if row is None else {(m["what"], m["file"]): m for m in row["mutants"]}
+        told = [_told(mutant, tried.get((mutant.what, mutant.file))) for mutant in each.mutants]
+        state = shown(each, seen.get((each.claim, each.session)))
+        cells = [each.claim, each.session, each.switch or "-", "<br>".join(each.checks), "<br>".join(told) or "-", state]
+        lines.append(_line(cells))
+    return LONG_HEAD + "\n".join(lines) + "\n"
+
+
+def _told(mutant: Mutant, seen: Row | None) -> str:
     return f"{mutant.what} (`{mutant.file}`) - not met: {mutant.fails}" + ("" if seen is None else f"; seen: {seen['seen']}")
 
 
-def _shown(mutants: list[Mutant], row: dict[str, Any] | None, seen: dict[tuple[str, str], Any], checks: list[str]) -> str:
-    """Whether the row is shown: by a run of the session as it is, and of all of the mutants."""
-    if row is None or row["checks"] != checks or any((mutant.what, mutant.file) not in seen for mutant in mutants):
-        return NOT_RUN
-    noticed = all(seen[mutant.what, mutant.file]["noticed"] for mutant in mutants)
-    return "yes" if row["passed"] and row["failed_when_off"] and noticed else "no"
+def _line(cells: list[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def main(arguments: list[str]) -> None:
+    """Write both pages, and claims.csv where a run is given."""
+    run = Path(arguments[0]) if arguments else RUN
+    rows: list[Row] = msgspec.json.decode(run.read_bytes()) if arguments or run.exists() else []
+    if arguments:
+        write_seen(seen_in(rows))
+    wanted, seen = expected(), read_seen()
+    PAGE.write_text(page(wanted, seen), encoding="utf-8")
+    LONG.parent.mkdir(parents=True, exist_ok=True)
+    LONG.write_text(long_page(wanted, seen, rows), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        SEEN.write_bytes(Path(sys.argv[1]).read_bytes())
-    PAGE.write_text(page(), encoding="utf-8")
+    main(sys.argv[1:])

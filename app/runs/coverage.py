@@ -27,6 +27,7 @@ class ClaimRow:
 
     claim: Claim
     session: str | None = None
+    seed: int | None = None  # that the session ran with
     checks: tuple[str, ...] = ()  # what the session expects, in words
     switch: str | None = None
     passed: bool | None = None  # with the switch on
@@ -118,7 +119,8 @@ def with_trials(rows: list[ClaimRow], trials: list[Trial]) -> list[ClaimRow]:
 def _row(claim: Claim, name: str, session: Session, *, on: RunOutcome, off: RunOutcome) -> ClaimRow:
     checks = tuple(verdict.expected for verdict in on.verdicts)
     unmet = next((f"{verdict.expected}: {verdict.seen}" for verdict in on.verdicts if not verdict.passed), "")
-    return ClaimRow(claim, name, checks, session.switch, on.passed and bool(checks), off.unmet, unmet)
+    passed = on.passed and bool(checks)
+    return ClaimRow(claim, name, session.seed, checks, session.switch, passed, failed_when_off=off.unmet, why=unmet)
 
 
 def write(rows: list[ClaimRow], out: Path) -> None:
@@ -143,6 +145,7 @@ def as_json(rows: list[ClaimRow]) -> list[dict[str, Any]]:
             "to_show": row.claim.text,
             "ids": row.claim.ids.split(),
             "session": row.session,
+            "seed": row.seed,
             "checks": row.checks,
             "switch": row.switch,
             "passed": row.passed,

@@ -4,6 +4,7 @@ import ast
 import shutil
 from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -27,6 +28,18 @@ SUPPORT = Mutant(
     what="the sign",
     fails="displacement",
 )
+
+
+ROW: dict[str, Any] = {
+    "name": "C 8",
+    "session": "one",
+    "seed": 7,
+    "checks": ["mode TEACH"],
+    "passed": True,
+    "failed_when_off": True,
+    "mutants": [{"what": SUPPORT.what, "file": SUPPORT.file, "noticed": True, "seen": "2 m"}],
+}
+"""Of claims.json."""
 
 
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: f"{mutant.session}: {mutant.what}")
@@ -122,4 +135,41 @@ def test_a_row_is_shown_only_where_its_mutants_are_noticed() -> None:
 
 
 def test_the_page_of_claims_is_up_to_date() -> None:
-    assert claims_page.PAGE.read_text(encoding="utf-8") == claims_page.page(), "run python -m tools.claims_page"
+    page = claims_page.page(claims_page.expected(), claims_page.read_seen())
+    assert claims_page.PAGE.read_text(encoding="utf-8") == page, "run python -m tools.claims_page"
+
+
+def test_page_and_summary_of_the_claims_stay_small() -> None:
+    """What programs print is built: 60 kB at most of it are kept."""
+    assert claims_page.PAGE.stat().st_size + claims_page.SHOWN.stat().st_size <= 60_000
+
+
+def test_what_a_run_showed_is_read_back_as_it_was_written(tmp_path: Path) -> None:
+    rows = claims_page.seen_in([ROW, {**ROW, "session": None}, {**ROW, "session": "other", "failed_when_off": False}])
+    claims_page.write_seen(rows, tmp_path / "claims.csv")
+    read = claims_page.read_seen(tmp_path / "claims.csv")
+    assert list(read.values()) == rows
+    assert [(each.session, each.seed, each.mutants, each.shown) for each in rows] == [("one", 7, 1, "yes"), ("other", 7, 1, "no")]
+    unnoticed = claims_page.seen_in([{**ROW, "mutants": [{**ROW["mutants"][0], "noticed": False}]}])
+    assert unnoticed[0].shown == "no"
+
+
+@pytest.mark.parametrize(
+    "newer",
+    [{"seed": 8}, {"checks": ["mode STOP"]}, {"mutants": []}, {"mutants": [SUPPORT, SUPPORT]}],
+    ids=["seed", "expectations", "a mutant less", "a mutant more"],
+)
+def test_a_row_is_not_run_where_something_of_it_is_newer(newer: dict[str, Any]) -> None:
+    seen = claims_page.seen_in([ROW])[0]
+    ran = claims_page.Expected("C 8", "one", 7, "AF-2", ["mode TEACH"], [SUPPORT])
+    assert claims_page.shown(ran, seen) == "yes"
+    assert claims_page.shown(ran._replace(**newer), seen) == claims_page.NOT_RUN
+    assert claims_page.shown(ran, None) == claims_page.NOT_RUN
+
+
+def test_the_long_page_has_what_is_expected_and_what_was_seen() -> None:
+    wanted = [claims_page.Expected("C 8", "one", 7, "AF-2", ["mode TEACH"], [SUPPORT])]
+    page = claims_page.long_page(wanted, {("C 8", "one"): claims_page.seen_in([ROW])[0]}, [ROW])
+    told = "the sign (`sim/control/feedback.py`) - not met: displacement"
+    assert page.endswith(f"| C 8 | one | AF-2 | mode TEACH | {told}; seen: 2 m | yes |\n")
+    assert claims_page.long_page(wanted, {}, []).endswith(f"| C 8 | one | AF-2 | mode TEACH | {told} | not run |\n")
