@@ -46,7 +46,7 @@ ToolForce = Annotated[float, _number(50.0, 250.0, "N", "RL-3", text="largest for
 ElbowForce = Annotated[float, _number(50.0, 250.0, "N", "RL-3", text="largest force of a link on what it meets")]
 Momentum = Annotated[float, _number(1.0, 100.0, "kg·m/s", "RL-4", text="largest momentum of the moving arm with its payload")]
 Power = Annotated[float, _number(10.0, 1000.0, "W", "RL-4", text="largest mechanical work a second on what the tool meets")]
-StoppingTime = Annotated[float, _number(0.15, 2.0, "s", "RL-4", text="longest time in which a moving arm comes to rest")]
+StoppingTime = Annotated[float, _number(0.1, 2.0, "s", "RL-4", text="longest time in which a moving arm comes to rest")]
 StoppingDistance = Annotated[
     float, _number(0.02, 3.0, "m", "RL-4", text="longest way of tool or elbow on which a moving arm comes to rest")
 ]

@@ -1,11 +1,15 @@
-"""Keeps the arm's own motions in the workspace: who follows a reference asks here how fast it may go on (VW-9, VW-10)."""
+"""Keeps the arm's own motions in the workspace and the joints within their limits: who follows a reference asks here how fast it
+may go on (VW-9, VW-10, RL-6).
+"""
 
 from collections.abc import Sequence
+from math import degrees
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
+from pendant.safety.robot_limits import JointRange
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law
 from pendant.tick.pose import Pose, Vector, flat, product
@@ -24,7 +28,8 @@ class WorkspaceKeeper:
     """Slows down what leads the arm before a border, and says when it can go on no more.
 
     A plan is looked at ahead, and stopped on its path where that leads out. Of a stream, and of a jogged motion, only the next
-    speed is known: it may be so fast that the arm could still stop inside. Without a workspace nothing is computed.
+    speed is known: it may be so fast that the arm could still stop inside. A joint is to its limits what a part is to a border,
+    with radians for metres. Without a workspace and without limits of the joints nothing is computed.
 
     Args:
         dynamics: the rigid model.
@@ -40,6 +45,7 @@ class WorkspaceKeeper:
     def __init__(self, dynamics: Dynamics, tcp: Array, R_FT: Array, stopping: StoppingDistance) -> None:
         self._dynamics, self._tcp, self._R_FT, self._stopping = dynamics, tcp, R_FT, stopping
         self._workspace: Workspace | None = None
+        self._joints: JointRange | None = None
         self._q = np.zeros(0)  # where the arm is led (n,)
         self._follows = False  # a motion was followed in the last tick
         self._limits = OutwardLimits(0)
@@ -49,24 +55,26 @@ class WorkspaceKeeper:
 
     def take(self, decision: Decision, q: Array, *, begins: bool) -> None:
         """One tick begins, the arm being led at angles (n,); `begins`: so does a motion."""
-        space = decision.workspace
-        if space is None and self._workspace is None:
+        space, joints = decision.workspace, decision.joint_range
+        if space is None and joints is None and not self._bound:
             return
-        follows = decision.law is _FOLLOW
-        going_on = self._follows and space is self._workspace and not (q == self._q).all()
+        follows, same = decision.law is _FOLLOW, space is self._workspace and joints is self._joints
+        going_on = self._follows and same and not (q == self._q).all()
         self._q, self._follows = q, follows
-        if follows and not begins and space is self._workspace:
+        if follows and not begins and same:
             return
         self._look, self.problem, self.wall = None, "", ""
-        if space is not self._workspace:
-            self._workspace, self._limits = space, OutwardLimits(0 if space is None else len(space.areas))
-        if space is not None and follows and not going_on:  # else it is the same way on which only the command is new
+        if not same:
+            self._workspace, self._joints = space, joints
+            count = (0 if space is None else len(space.areas)) + (0 if joints is None else q.size)
+            self._limits = OutwardLimits(count)
+        if self._bound and follows and not going_on:  # else it is the same way on which only the command is new
             self._limits.begin(self._distances(q))
             self._levers = self._dynamics.levers(float(np.linalg.norm(self._tcp)))
 
     def rate(self, motion: AlongPlan, rate: float) -> float:
         """The rate at which a plan's own time passes in the next tick, at most `rate`."""
-        if self._workspace is None:
+        if not self._bound:
             return rate
         if self._look is None:
             self._look = LookAhead(motion, self._limits, self._distances, self._stopping)
@@ -77,7 +85,7 @@ class WorkspaceKeeper:
 
     def share(self, q: Array, qd: Array) -> float:
         """The share of these speeds (n,) that the next tick may have, 1 at most, at angles (n,)."""
-        if self._workspace is None:
+        if not self._bound:
             return 1.0
         distances = self._distances(q)
         self._limits.step(distances)
@@ -95,7 +103,7 @@ class WorkspaceKeeper:
     def watch(self, estimate: Estimate) -> str:
         """Of joints that no reference leads: why they must brake now, when they can only just stop inside, or ""."""
         stopping = self._stopping
-        if self._workspace is not None:
+        if self._bound:
             q, qd = estimate.q, estimate.theta_d + stopping.reaction * estimate.theta_dd  # as fast as they are by then
             way = stopping.way(stopping.seconds(q, qd), stopping.reaction)
             if self._free(q, qd, way, self._out(q)) < way:
@@ -110,14 +118,17 @@ class WorkspaceKeeper:
             length: that is wanted [s].
         """
         q, qd = now[:2]
-        if self._workspace is None or not qd.any():
+        if not self._bound or not qd.any():
             return length
         free = self._free(q, qd, 0.5 * length, self._out(q))
         return max(min(length, 2.0 * free), min(length, self._stopping.seconds(q, qd)))
 
     def _free(self, q: Array, qd: Array, way: float, out: float) -> float:
         """As `free_way`; not looked at where no part can come to a border on it. `out`: as of `_out` at q [m]."""
-        reach = way * float(np.abs(qd) @ self._levers)
+        size = np.abs(qd)
+        reach = way * float(size @ self._levers)
+        if self._joints is not None:
+            reach = max(reach, way * float(size.max()))
         return way if out < -reach else free_way(self._out, q, qd, way)
 
     def _out(self, q: Array) -> float:
@@ -127,9 +138,17 @@ class WorkspaceKeeper:
     def _over(self, distances: list[float]) -> float:
         return max(distance - bound for distance, bound in zip(distances, self._limits.bound, strict=True))
 
+    @property
+    def _bound(self) -> bool:
+        """Something bounds the arm's motions."""
+        return self._workspace is not None or self._joints is not None
+
     def _distances(self, q: Array) -> list[float]:
-        assert self._workspace is not None
-        return self._workspace.distances(self._points(q))
+        """Of each part to its border [m], then of each joint to its nearer limit [rad]."""
+        found = [] if self._workspace is None else self._workspace.distances(self._points(q))
+        if self._joints is not None:
+            found += [max(x - high, low - x) for x, low, high in zip(q.tolist(), *self._joints, strict=True)]
+        return found
 
     def _points(self, q: Array) -> ArmPoints:
         dynamics = self._dynamics
@@ -139,13 +158,22 @@ class WorkspaceKeeper:
         return ArmPoints(Pose(_vector(p), R_BF), tcp, _vector(elbow), _vector(dynamics.gravity_B), dynamics.load.mass)
 
     def _tell_ahead(self, q: Array, qd: Array, way: float) -> None:
-        """The area that is in the way."""
+        """What is in the way."""
         ahead = [a - b for a, b in zip(self._distances(q + way * qd), self._limits.bound, strict=True)]
         self._tell(max(range(len(ahead)), key=ahead.__getitem__), q)
 
-    def _tell(self, area: int, q: Array) -> None:
-        assert self._workspace is not None
-        near = self._workspace.nearby(area, self._points(q))
+    def _tell(self, bound: int, q: Array) -> None:
+        """Why the motion ends at an area, or at a limit of a joint, which are counted after the areas."""
+        space = self._workspace
+        areas = 0 if space is None else len(space.areas)
+        if space is None or bound >= areas:
+            assert self._joints is not None
+            joint = bound - areas
+            angle, low, high = q[joint].item(), self._joints.low[joint], self._joints.high[joint]
+            limit, back = (high, "-") if angle - high > low - angle else (low, "+")
+            self.problem, self.wall = f"joint {joint + 1} at its limit, {degrees(limit):.1f}°; back is {back}", ""
+            return
+        near = space.nearby(bound, self._points(q))
         self.problem, self.wall = told(near), near.border.name
 
 

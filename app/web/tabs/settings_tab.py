@@ -9,6 +9,7 @@ import viser
 
 from app.files.checked import BadInput
 from app.web.running import Running
+from app.web.tuning.limit_presets import AS_SHIPPED, limit_presets, preset_of, told_limits
 from app.web.tuning.presets import as_file, changes, from_file, presets
 from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, section_of, title_of, told
 from app.web.widgets import style, svg
@@ -55,6 +56,12 @@ class SettingsTab:
         self._line = Html(gui)
         self.undo = gui.add_button("Undo", color="gray", disabled=True)
         self.message = Html(gui)
+        self.limits = Html(gui)
+        self.limit_preset = gui.add_dropdown(
+            "Robot limits", tuple(limit_presets()), initial_value=AS_SHIPPED, hint="RL-4: presets"
+        )
+        self.limit_source = Html(gui)
+        self.take_limits = gui.add_button("Take these limits")
         self.preset = gui.add_dropdown("Preset", tuple(presets()), visible=False)
         self.listed = Html(gui)
         self.take = gui.add_button("Take this preset", visible=False)
@@ -80,7 +87,7 @@ class SettingsTab:
                     self._fill()
 
         again(self.view, self._show_view)
-        for control in (self.section, self.search, self.preset):
+        for control in (self.section, self.search, self.preset, self.limit_preset):
             again(control, lambda: None)
         again(self.expert, self._offer)
 
@@ -93,6 +100,10 @@ class SettingsTab:
             self._change(
                 {change.row.name: change.new for change in changes(self._loop.settings, self._presets[self.preset.value])}
             )
+
+        @self.take_limits.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            self._change(limit_presets()[self.limit_preset.value].settings)
 
         @self.save.on_click
         async def _(event: viser.GuiEvent) -> None:
@@ -146,6 +157,8 @@ class SettingsTab:
         self._chosen = self.view.value if self.view.value in VIEWS else VIEWS[0]
         for control in (self.preset, self.take, self.save):
             control.visible = self._chosen == VIEWS[1]
+        for control in (self.limit_preset, self.take_limits):
+            control.visible = self._chosen == VIEWS[0]
         self._hidden.show(style.shown(self.load._impl.uuid, self._chosen == VIEWS[1]))
         for control in (self.search, self.expert, self.section, self.defaults):
             control.visible = self._chosen == VIEWS[2]
@@ -242,6 +255,7 @@ class SettingsTab:
             enable(self.controls[row.name], not (row.locked and self._locked))
         enable(self.defaults, not self._locked)
         enable(self.take, not self._locked)
+        enable(self.take_limits, not self._locked)
 
     def _refresh(self, settings: Settings) -> None:
         count = 0
@@ -256,6 +270,7 @@ class SettingsTab:
             if control.label != (text := self._label(row, value)):
                 control.label = text
             self._texts[row.name].show(svg.fine_print(about(row, value)))
+        self._tell_limits(settings)
         state = "Locked while the arm is free or runs" if self._locked else "Taken at once"
         self._line.show(svg.facts([("Limits checksum", limits_checksum(settings)), ("Changed", f"{count}"), ("Status", state)]))
         self.listed.show(self._changes(settings) if self._chosen == VIEWS[1] else "")
@@ -268,6 +283,18 @@ class SettingsTab:
             for row, old, new in changes(settings, preset)
         ]
         return svg.differences(preset.text, rows)
+
+    def _tell_limits(self, settings: Settings) -> None:
+        """The robot's limits as they are, and the chosen preset of them."""
+        if self._chosen != VIEWS[0]:
+            self.limits.show("")
+            self.limit_source.show("")
+            return
+        held = settings.robot_limits
+        state = f"Robot limits: {preset_of(held)}." if held.on else "Robot limits are switched off (robot_limits.on)."
+        self.limits.show(svg.limits(told_limits(held)) + svg.fine_print(state))
+        chosen = limit_presets()[self.limit_preset.value]
+        self.limit_source.show(svg.fine_print(f"{'Assumed. ' if chosen.assumed else ''}{chosen.source}"))
 
 
 def round_down(span: float) -> int:

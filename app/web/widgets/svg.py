@@ -245,6 +245,13 @@ CONTACT_HEADS = {
 """Columns of the contact log, and what is told of each when the pointer rests on it."""
 
 
+def limits(rows: Iterable[tuple[str, ...]]) -> str:
+    """The robot's limits: name, value in both safety modes, tolerance."""
+    lines = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    heads = "".join(f"<th>{head}</th>" for head in ("Limit", "Normal", "Reduced", "Tolerance"))
+    return f'<div class="pd-contacts"><table><tr>{heads}</tr>{lines}</table></div>'
+
+
 def listing(rows: Iterable[tuple[int, str]], marked: int, state: str) -> str:
     """Lines of a program with their numbers; one is marked, which is in `state`: "" for where it went wrong."""
     lines = "".join(

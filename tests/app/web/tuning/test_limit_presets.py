@@ -1,0 +1,50 @@
+"""The robot's limits as people see them: a row for every limit on the page and in the docs, and four presets (RL-4)."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from app.web.tuning.limit_presets import AS_SHIPPED, OTHER, POSITIONS, ROWS, limit_presets, preset_of, told_limits
+from pendant.all_settings import Settings, apply, value_of
+from pendant.safety.settings import NormalLimits, ReducedLimits
+
+GUIDE = (Path(__file__).parents[4] / "docs" / "guide" / "stops.md").read_text(encoding="utf-8")
+
+
+def test_every_limit_has_a_row_on_the_page_and_in_the_docs() -> None:
+    fields = [field.name for field in msgspec.structs.fields(NormalLimits)]
+    assert fields == [field.name for field in msgspec.structs.fields(ReducedLimits)]
+    assert sorted(fields) == sorted([*[row.field for row in ROWS], POSITIONS.field])
+    page = list(told_limits(Settings().robot_limits))
+    assert [row[0] for row in page] == [*[row.name for row in ROWS], POSITIONS.name]
+    for name, normal, reduced, tolerance in page:
+        (line,) = [line for line in GUIDE.splitlines() if line.startswith(f"| {name.lower()} |")]
+        cells = [cell.strip() for cell in line.split("|")]
+        assert cells[3:6] == [normal, reduced, tolerance or "none"], name
+
+
+def test_four_presets_from_most_to_least_restricted_of_which_the_third_ships() -> None:
+    presets = list(limit_presets().values())
+    assert [preset.title for preset in presets] == ["Most restricted", "Restricted", AS_SHIPPED, "Least restricted"]
+    assert apply(Settings(), presets[2].settings) == Settings()
+    for tighter, wider in pairwise(presets):
+        assert all(tighter.settings[name] <= value for name, value in wider.settings.items())  # type: ignore[operator]
+    for preset in presets:
+        assert preset.normal.keys() == preset.reduced.keys() == {row.field for row in ROWS} - {"joint_speed"}
+        assert all(preset.reduced[name] <= value for name, value in preset.normal.items())
+        assert len(preset.source) > 20
+
+
+@pytest.mark.parametrize("title", list(limit_presets()))
+def test_a_preset_that_was_taken_is_known_by_its_name(title: str) -> None:
+    settings = apply(Settings(), limit_presets()[title].settings)
+    assert preset_of(settings.robot_limits) == title
+    assert value_of(settings, "robot_limits.normal.tool_speed") == limit_presets()[title].normal["tool_speed"]
+    assert preset_of(apply(settings, {"robot_limits.normal.power": 77.0}).robot_limits) == OTHER
+
+
+def test_the_joints_whose_positions_are_limited_are_named() -> None:
+    settings = apply(Settings(), {"robot_limits.reduced.positions.j2_max": 1.0})
+    assert list(told_limits(settings.robot_limits))[-1] == (POSITIONS.name, "the arm's own", "2: -363 to 57°", "5 °")
