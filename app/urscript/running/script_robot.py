@@ -192,12 +192,13 @@ class ScriptRobot:
             )
 
     def _watch(self, name: str, frequency: float, action: str) -> None:
-        if action not in ("pause", "stop", "ignore"):
+        variable, done = name.lower(), action.lower()  # the maker's own example of RTDE writes "PAUSE"
+        if done not in ("pause", "stop", "ignore"):
             raise Misuse(f'action: {action!r}; expected "pause", "stop" or "ignore"')
-        if not isinstance(name, str) or not name.startswith("input_"):
+        if not variable.startswith("input_"):
             raise Misuse(f"variable_name: {name!r} is no input of RTDE")
         silent = 0 if frequency == 0.0 else math.ceil(TICK_RATE / frequency)
-        self.watchdog = None if action == "ignore" or not silent else (name, silent, action)
+        self.watchdog = None if done == "ignore" or not silent else (variable, silent, done)
 
 
 class OfferedScript(NamedTuple):
