@@ -83,6 +83,11 @@ class ModbusSignal:
     used: bool = True  # by the program that runs, which then ends where it is out of order for too long
 
     @property
+    def taken(self) -> int:
+        """How many values it takes when it is written."""
+        return self.written_count or self.count
+
+    @property
     def valid(self) -> bool:
         """It was read, and written, without an error."""
         return self.connected and self.device_error == 0

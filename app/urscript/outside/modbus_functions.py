@@ -59,9 +59,8 @@ def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
             if signal.kind is not kind:
                 raise Misuse(f"signal_name: {name} is no {'digital' if kind.digital else 'register'} output")
             found: Sequence[Value] = value if type(value) is tuple else (value,)
-            wanted = signal.written_count or signal.count
-            if len(found) != wanted:
-                raise Misuse(f"{len(found)} values, the signal has {wanted}")
+            if len(found) != signal.taken:
+                raise Misuse(f"{len(found)} values, the signal has {signal.taken}")
             units.write(name, [int(check(each)) & 0xFFFF for each in found])
 
         return write

@@ -8,7 +8,8 @@ from app.urscript.outside.modbus_units import ModbusUnits
 from pendant.settings.schema import ticks
 
 LOW_STOPPED, HIGH_STOPPED, HIGH_RUNNING = 1, 2, 3
-"""Choices of a run state: low or high while no program runs; high while one runs, and low while none does."""
+"""Choices of a run state: low or high while no program runs; high while one runs, and low while none does. A register is 0 when it
+is low, and 1 when it is high."""
 
 KEPT = ticks(0.1)
 """An input's wish for free-drive lasts so long after it was seen: some ticks more than one."""
@@ -75,7 +76,7 @@ class InstalledSignals:
         record = self._cabinet.record
         if isinstance(number, str):
             if number in self._units:
-                self._units.write(number, [int(on)])
+                self._units.write(number, [int(on)] * self._units.signal(number).taken)
         elif kind is OutputKind.DIGITAL:
             set_outputs(record, 1 << number, on << number)
         elif kind is OutputKind.ANALOG:

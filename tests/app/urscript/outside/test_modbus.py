@@ -242,6 +242,24 @@ def test_a_signal_of_another_kind_is_not_written(bench: ScriptBench, unit: Modbu
     assert trouble == "line 3, column 3: modbus_set_output_register(): 1 values, the signal has 2"
 
 
+def test_a_register_follows_the_programs_state(bench: ScriptBench, unit: Modbus) -> None:
+    """Found: pendants write this line for each register output."""
+    follows = 'modbus_set_runstate_dependent_choice("word", 3)\nmodbus_set_runstate_dependent_choice("words", 3)\nsleep(0.4)'
+    tells = 'textmsg(modbus_get_signal_status("word"))\ntextmsg(modbus_get_signal_status("words"))'
+    signals = '33, 3, "word"; 34, 3, "words", False, 2'
+    assert paced(bench, program(unit, signals, f"{follows}\n{tells}")) == (["1", "[1, 1]"], "")
+    units, end = bench.runner.memory.units, time.monotonic() + 10.0
+    while any(units.signal("word").values) or any(units.signal("words").values):
+        assert time.monotonic() < end
+        bench.robot.step()
+        time.sleep(0.001)
+
+
+def test_an_input_follows_no_state(bench: ScriptBench, unit: Modbus) -> None:
+    text = whole(add(unit.port, '3, 2, "ri"'), 'modbus_set_runstate_dependent_choice("ri", 3)')
+    assert bench.run(text)[1] == "line 3, column 3: modbus_set_runstate_dependent_choice(): signal_name: ri is no output"
+
+
 def test_a_connection_is_made_anew(bench: ScriptBench, unit: Modbus) -> None:
     text = program(unit, '3, 2, "ri"', f'modbus_reset_connection("127.0.0.1:{unit.port}")\ntextmsg(modbus_get_error("ri"))')
     assert paced(bench, text) == (["0"], "")
