@@ -31,7 +31,7 @@ FASTEST = 125.0
 """With which it can be read (URScript manual, modbus_set_signal_update_frequency) [1/s]."""
 
 WATCHDOG = 2.0
-"""Time for which a signal may be out of order before it ends the program (URScript manual, modbus_set_signal_watchdog) [s]."""
+"""Time for which a signal may be out of order before a program that reads it ends (URScript manual, modbus_get_signal_status) [s]."""
 
 UNREACHABLE = 100
 """What modbus_get_error() tells of a unit that does not answer. From 1 to 6 are the exceptions of the protocol."""
@@ -80,7 +80,7 @@ class ModbusSignal:
     connected: bool = False  # the last request was answered
     due: float = 0.0  # when it is read next [s]
     seen: float = 0.0  # the robot's clock when it was in order last [s]
-    used: bool = True  # by the program that runs, which then ends where it is out of order for too long
+    told: bool = False  # to people: that it has been out of order for longer than it may be
 
     @property
     def taken(self) -> int:

@@ -49,8 +49,8 @@ def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
         units.add(*place(ip), signal)
 
     def status(name: str, _: Value) -> Value:
-        signal = units.signal(name)
-        values = tuple(map(bool, signal.values)) if signal.kind.digital else signal.values
+        signal, found = units.signal(name), units.read(name)
+        values = tuple(map(bool, found)) if signal.kind.digital else found
         return values[0] if signal.count == 1 else values
 
     def put(kind: SignalKind, check: Callable[[Value], Value]) -> Callable[[str, Value, Value], None]:

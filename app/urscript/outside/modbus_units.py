@@ -47,13 +47,21 @@ class ModbusUnits:
                 del self._units[unit.address, unit.port]
 
     def signal(self, name: str) -> ModbusSignal:
-        """A signal that the program uses. Raises Misuse: there is none of this name."""
+        """A signal. Raises Misuse: there is none of this name."""
         if name not in self._signals:
             raise Misuse(f"signal_name: there is no signal {name[:20]!r}")
-        found = self._signals[name][1]
-        if not found.used:
-            found.used, found.seen = True, self._clock()
-        return found
+        return self._signals[name][1]
+
+    def read(self, name: str) -> tuple[int, ...]:
+        """What a signal was when it was in order last.
+
+        Raises:
+            Misuse: there is none of this name, or it has been out of order for longer than it may be.
+        """
+        signal = self.signal(name)
+        if self.invalid_for(signal) > signal.watchdog:
+            raise Misuse(self._problem(*self._signals[name]))
+        return signal.values
 
     def __contains__(self, name: str) -> bool:
         return name in self._signals
@@ -78,21 +86,25 @@ class ModbusUnits:
         """Those at an address, at whatever port."""
         return [unit for (host, _), unit in self._units.items() if host == address]
 
-    def begin(self) -> None:
-        """A program begins, which has used no signal yet."""
-        for _, signal in self._signals.values():
-            signal.used = False
-
     def step(self) -> str:
-        """One tick of the robot; what the program uses and is out of order for longer than it may be, in words, or ""."""
-        clock, problem = self._clock(), ""
+        """One tick of the robot; what people have not been told of a signal, or of all signals of a unit, in words, or ""."""
+        clock = self._clock()
+        late: tuple[ModbusUnit, ModbusSignal] | None = None
         for unit, signal in self._signals.values():
             if signal.valid:
                 signal.seen = clock
-            elif signal.used and clock - signal.seen > signal.watchdog and not problem:
-                why = f"exception {signal.device_error}" if signal.connected else f"no answer from {unit.address}:{unit.port}"
-                problem = f"Modbus signal {signal.name}: {why} for {signal.watchdog:g} s"
-        return problem
+            elif late is None and not signal.told and clock - signal.seen > signal.watchdog:
+                late = unit, signal
+        if late is None:
+            return ""
+        unit, signal = late
+        for each in (signal,) if signal.connected else unit.signals:
+            each.told = True
+        return self._problem(unit, signal)
+
+    def _problem(self, unit: ModbusUnit, signal: ModbusSignal) -> str:
+        why = f"exception {signal.device_error}" if signal.connected else f"no answer from {unit.address}:{unit.port}"
+        return f"Modbus signal {signal.name}: {why} for {signal.watchdog:g} s"
 
     @property
     def used(self) -> bool:

@@ -87,7 +87,7 @@ class InstalledSignals:
     def _high(self, kind: OutputKind, number: int | str) -> bool:
         record = self._cabinet.record
         if isinstance(number, str):
-            return number in self._units and any(self._units.signal(number).values)
+            return number in self._units and self._units.signal(number).valid and any(self._units.signal(number).values)
         if kind is OutputKind.REGISTER:
             return read_bit(record, "input", number)
         return bool(int(record.field("actual_digital_input_bits").item()) >> number & 1)

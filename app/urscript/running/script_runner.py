@@ -183,9 +183,9 @@ class ScriptRunner:
             if running.machine.breathless is not None and not self._warned:
                 self._warned = True
                 self.tell(Told(Telling.TEXT, BREATHLESS.format(running.machine.breathless.line), running.machine.script.name))
-        problem = self.memory.step()
-        if problem:
-            self._end(self._unable(problem))
+        found = self.memory.step()
+        if found:
+            self._note(found)
         if self._beside:
             inputs = self._beside.step(inputs)
         equips = inputs is not NOTHING and bool(inputs.load or inputs.tool or inputs.tools)
@@ -205,6 +205,13 @@ class ScriptRunner:
             self._end(self._unable(refusal or self.arm.refusal))
         elif refusal and refusal == self.arm.refusal:  # nobody waits for what was refused
             self._end(self._unable(refusal))
+
+    def _note(self, text: str) -> None:
+        """Tell people something; while a program runs, it counts as one of its messages."""
+        if self._running is not None:
+            self._running.robot.say(text)
+        else:
+            self.tell(Told(Telling.TEXT, printable(text)))
 
     def _unable(self, reason: str) -> ScriptTrouble | None:
         """Why the arm could not do what the script asked for, at the line that it has come to."""
