@@ -8,8 +8,8 @@ from app.urscript.outside.modbus_units import ModbusUnits
 from pendant.settings.schema import ticks
 
 LOW_STOPPED, HIGH_STOPPED, HIGH_RUNNING = 1, 2, 3
-"""Choices of a run state: low or high while no program runs; high while one runs, and low while none does. A register is 0 when it
-is low, and 1 when it is high."""
+"""Choices of a run state: low or high while no program runs; high while one runs, and low while none does. A register that is low
+is 0, one that is high is 1."""
 
 KEPT = ticks(0.1)
 """An input's wish for free-drive lasts so long after it was seen: some ticks more than one."""

@@ -36,7 +36,7 @@ class ScriptRobot:
     Args:
         cabinet: the robot.
         arm: moves it.
-        hosts: that this script may call.
+        senders: addresses other than this machine's that this script may call.
         tell: takes what the script tells.
         memory: what the robot keeps from one program to the next.
     """
@@ -45,14 +45,15 @@ class ScriptRobot:
         self,
         cabinet: Cabinet,
         arm: ArmSide,
-        hosts: AllowedHosts,
+        senders: frozenset[str],
         tell: Callable[[Told], None],
         *,
         memory: RobotMemory,
     ) -> None:
         self._cabinet, self._tell, self.memory = cabinet, tell, memory
-        self.arm, self.hosts, self.record, self.seed = arm, hosts, cabinet.record, cabinet.simulation.scenario.seed
-        self.sockets = ScriptSockets(hosts)
+        self.arm, self.record, self.seed = arm, cabinet.record, cabinet.simulation.scenario.seed
+        self.hosts = AllowedHosts(senders, self.say)
+        self.sockets = ScriptSockets(self.hosts)
         self.watchdog: tuple[str, int, str] | None = None  # variable, ticks that it may be silent, action
         self.asks: list[Ask] = []  # for the tick that begins
         self.tool: Tool | None = None  # to be used from now on

@@ -12,7 +12,6 @@ from app.urscript.language import tree
 from app.urscript.language.reading import read_script
 from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.machine import Machine
-from app.urscript.outside.hosts import AllowedHosts
 from app.urscript.robot.robot_memory import RobotMemory
 from app.urscript.running.garbage import uncollected
 from app.urscript.running.input_watchdog import InputWatchdog
@@ -154,7 +153,7 @@ class ScriptRunner:
         state = self.cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
-        robot = ScriptRobot(self.cabinet, self.arm, AllowedHosts(hosts), self.tell, memory=self.memory)
+        robot = ScriptRobot(self.cabinet, self.arm, hosts, self.tell, memory=self.memory)
         self._orders.let_go()
         with uncollected(len(text)):
             body = read_script(text)

@@ -149,7 +149,7 @@ def test_within_the_watchdogs_time_the_value_before_is_read(bench: ScriptBench) 
 
 
 def test_signals_of_a_dead_unit_that_nobody_reads_are_told_once(bench: ScriptBench) -> None:
-    """Found: saved programs add their installation's signals; the maker's example waits 15 s for a unit with modbus_get_error()."""
+    """Found: saved programs add their installation's signals; the maker's example waits 15 s with modbus_get_error()."""
     port = free_port()
     waits = 'i = 0\nwhile modbus_get_error("do") != 0 and i < 2000:\n  i = i + 1\n  sync()\nend\ntextmsg("connection error")'
     writes = 'modbus_set_output_signal("do", True)'
