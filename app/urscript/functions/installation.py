@@ -7,7 +7,6 @@ from app.robot_interface.controller.field_record import FieldRecord
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.signature import Builtin, Taken, boolean, builtin, integer, items, number, text, within
 from app.urscript.machine.values import Value
-from app.urscript.outside.modbus_client import SignalKind
 from app.urscript.robot.robot_side import RobotSide
 from app.urscript.robot.run_states import OutputKind
 
@@ -125,8 +124,8 @@ def _of_input_actions(robot: RobotSide) -> Iterator[Builtin]:
         robot.memory.installed.free_drive_by(OutputKind.MODBUS, name, on=action == "freedrive")
 
     def follow(name: str, state: int) -> None:
-        if robot.memory.units.signal(name).kind is not SignalKind.DIGITAL_OUTPUT:
-            raise Misuse(f"signal_name: {name} is no digital output")
+        if not robot.memory.units.signal(name).kind.output:
+            raise Misuse(f"signal_name: {name} is no output")
         robot.memory.installed.choose(OutputKind.MODBUS, name, state)
 
     signal = Taken("signal_name", text)

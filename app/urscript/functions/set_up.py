@@ -18,6 +18,7 @@ from app.urscript.machine.signature import (
     number,
     numbers,
     pose,
+    text,
     within,
 )
 from app.urscript.machine.values import PoseValue, Value
@@ -58,11 +59,11 @@ def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
     yield builtin("zero_ftsensor", robot.arm.zero, takes_time=True)
     yield builtin("protective_stop", lambda: robot.command("protective_stop"))
     yield builtin("set_gravity", lambda d: robot.command("gravity", gravity=d), Taken("d", numbers(3)))
-    action = Taken("action", any_value, "pause")
+    action = Taken("action", text, "pause")
     yield builtin(
         "rtde_set_watchdog",
         lambda n, f, act: robot.command("watchdog", name=n, frequency=f, action=act),
-        Taken("variable_name", any_value),
+        Taken("variable_name", text),
         Taken("min_frequency", within(number, 0.0, 500.0)),
         action,
     )

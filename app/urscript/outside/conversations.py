@@ -23,12 +23,14 @@ def of_sockets(sockets: ScriptSockets) -> Iterator[Builtin]:
     """All of them."""
 
     def opened(address: str, port: int, name: str, timeout: float) -> Reading:
-        connection, where = sockets.begin(address, port, name)
+        begun = sockets.begin(address, port, name)
         for _ in _ticks(timeout or 2.0):
-            if connection.connected(where):
-                return True
-            if connection.broken:
-                break
+            if begun is not None:
+                connection, where = begun
+                if connection.connected(where):
+                    return True
+                if connection.broken:
+                    break
             yield
         sockets.close(name)
         return False

@@ -10,6 +10,7 @@ import threading
 import time
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 from pymodbus.client import ModbusTcpClient
 from pymodbus.exceptions import ModbusException
@@ -31,7 +32,8 @@ FASTEST = 125.0
 """With which it can be read (URScript manual, modbus_set_signal_update_frequency) [1/s]."""
 
 WATCHDOG = 2.0
-"""Time for which a signal may be out of order before it ends the program (URScript manual, modbus_set_signal_watchdog) [s]."""
+"""Time for which a signal may be out of order [s]; who reads it after that ends the program (URScript manual,
+modbus_get_signal_status and modbus_set_signal_watchdog)."""
 
 UNREACHABLE = 100
 """What modbus_get_error() tells of a unit that does not answer. From 1 to 6 are the exceptions of the protocol."""
@@ -80,7 +82,12 @@ class ModbusSignal:
     connected: bool = False  # the last request was answered
     due: float = 0.0  # when it is read next [s]
     seen: float = 0.0  # the robot's clock when it was in order last [s]
-    used: bool = True  # by the program that runs, which then ends where it is out of order for too long
+    told: bool = False  # to people: that it has been out of order for longer than it may be
+
+    @property
+    def taken(self) -> int:
+        """How many values it takes when it is written."""
+        return self.written_count or self.count
 
     @property
     def valid(self) -> bool:
@@ -100,12 +107,33 @@ class CustomRequest(ModbusPDU):
         return self._data
 
 
-class ModbusUnit(threading.Thread):
-    """A unit at an address, and its signals. Attributes of a signal are set whole, from either side."""
+class UnitPlace(NamedTuple):
+    """Where a unit is."""
 
-    def __init__(self, address: str, port: int) -> None:
-        super().__init__(name=f"modbus {address}", daemon=True)
-        self.address, self.port = address, port
+    address: str  # as the program wrote it, where it may not be called
+    port: int
+    allowed: bool  # it may be called
+
+
+class AbsentUnit:
+    """A unit that may not be called: nothing is sent, and its signals stay out of order."""
+
+    def __init__(self, place: UnitPlace) -> None:
+        self.place = place
+        self.signals: tuple[ModbusSignal, ...] = ()
+
+    def _nothing(self) -> None:
+        """There is nobody to talk to."""
+
+    start = hurry = reset = end = _nothing
+
+
+class ModbusUnit(threading.Thread):
+    """A unit at a place, and its signals. Attributes of a signal are set whole, from either side."""
+
+    def __init__(self, place: UnitPlace) -> None:
+        super().__init__(name=f"modbus {place.address}", daemon=True)
+        self.place = place
         self.signals: tuple[ModbusSignal, ...] = ()
         self._wake, self._over, self._afresh = threading.Event(), False, False
 
@@ -127,7 +155,7 @@ class ModbusUnit(threading.Thread):
 
     def run(self) -> None:
         """Read and write what is due, until it is over."""
-        client = ModbusTcpClient(self.address, port=self.port, timeout=PATIENCE, retries=0)
+        client = ModbusTcpClient(self.place.address, port=self.place.port, timeout=PATIENCE, retries=0)
         try:
             while not self._over:
                 self._wake.clear()

@@ -13,6 +13,7 @@ from app.urscript.outside.modbus_client import (
     CustomRequest,
     ModbusSignal,
     SignalKind,
+    UnitPlace,
     send_custom,
 )
 from app.urscript.outside.modbus_units import ModbusUnits
@@ -31,26 +32,27 @@ DEVICE, WORD = within(integer, 0, 255), within(integer, 0, 65535)
 def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
     """All but those that follow the program's state."""
 
-    def place(ip: str) -> tuple[str, int]:
-        """Address and port; the port may be left out."""
+    def place(ip: str) -> UnitPlace:
+        """Where a unit is; the port may be left out."""
         host, _, port = ip.rpartition(":") if ip.count(":") == 1 else (ip, "", "")
         if port and not (port.isdigit() and 0 < int(port) < 1 << 16):
             raise Misuse(f"IP: {ip[:50]!r}; expected ADDRESS or ADDRESS:PORT")
-        return hosts.address(host), int(port or PORT)
+        address = hosts.reached(host)
+        return UnitPlace(address or host, int(port or PORT), address is not None)
 
     def add(*given: Value) -> None:
         ip, device, address, kind, name, _, count = given
-        units.add(*place(ip), ModbusSignal(name, SignalKind(kind), device, address, count))
+        units.add(place(ip), ModbusSignal(name, SignalKind(kind), device, address, count))
 
     def add_both(*given: Value) -> None:
         ip, device, read_at, read_count, write_at, write_count, name, _ = given
         signal = ModbusSignal(name, SignalKind.REGISTER_OUTPUT, device, read_at, read_count)
         signal.written_at, signal.written_count = write_at, write_count
-        units.add(*place(ip), signal)
+        units.add(place(ip), signal)
 
     def status(name: str, _: Value) -> Value:
-        signal = units.signal(name)
-        values = tuple(map(bool, signal.values)) if signal.kind.digital else signal.values
+        signal, found = units.signal(name), units.read(name)
+        values = tuple(map(bool, found)) if signal.kind.digital else found
         return values[0] if signal.count == 1 else values
 
     def put(kind: SignalKind, check: Callable[[Value], Value]) -> Callable[[str, Value, Value], None]:
@@ -59,15 +61,17 @@ def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
             if signal.kind is not kind:
                 raise Misuse(f"signal_name: {name} is no {'digital' if kind.digital else 'register'} output")
             found: Sequence[Value] = value if type(value) is tuple else (value,)
-            wanted = signal.written_count or signal.count
-            if len(found) != wanted:
-                raise Misuse(f"{len(found)} values, the signal has {wanted}")
+            if len(found) != signal.taken:
+                raise Misuse(f"{len(found)} values, the signal has {signal.taken}")
             units.write(name, [int(check(each)) & 0xFFFF for each in found])
 
         return write
 
     def custom(ip: str, device: int, function: int, data: Value) -> None:
-        send_custom(*place(ip), CustomRequest(function, bytes(map(DEVICE, data)), device))
+        request = CustomRequest(function, bytes(map(DEVICE, data)), device)
+        unit = place(ip)
+        if unit.allowed:
+            send_custom(unit.address, unit.port, request)
 
     def frequency(name: str, wanted: float) -> None:
         units.signal(name).frequency = wanted
@@ -82,7 +86,7 @@ def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
         return {0: connection or signal.device_error, 1: signal.device_error, 2: connection}[source]
 
     def reset(ip: str, blocking: bool) -> Generator[None, None, None]:
-        found = units.units_at(place(ip)[0])
+        found = units.units_at(place(ip))
         if not found:
             raise Misuse(f"connection_id: there is no signal at {ip[:50]}")
         for unit in found:

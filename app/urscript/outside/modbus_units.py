@@ -3,10 +3,13 @@
 from collections.abc import Callable, Sequence
 
 from app.urscript.language.trouble import Misuse
-from app.urscript.outside.modbus_client import ModbusSignal, ModbusUnit
+from app.urscript.outside.hosts import SHOWN
+from app.urscript.outside.modbus_client import AbsentUnit, ModbusSignal, ModbusUnit, UnitPlace
 
 MOST_SIGNALS = 200
 MOST_UNITS = 16
+
+Unit = ModbusUnit | AbsentUnit
 
 
 class ModbusUnits:
@@ -17,18 +20,18 @@ class ModbusUnits:
     """
 
     def __init__(self, clock: Callable[[], float]) -> None:
-        self._units: dict[tuple[str, int], ModbusUnit] = {}
-        self._signals: dict[str, tuple[ModbusUnit, ModbusSignal]] = {}
+        self._units: dict[UnitPlace, Unit] = {}
+        self._signals: dict[str, tuple[Unit, ModbusSignal]] = {}
         self._clock = clock
 
-    def add(self, address: str, port: int, signal: ModbusSignal) -> None:
+    def add(self, place: UnitPlace, signal: ModbusSignal) -> None:
         """Supervise a signal; one of the same name is replaced. Raises Misuse: there are too many."""
         self.delete(signal.name)
-        unit = self._units.get((address, port))
+        unit = self._units.get(place)
         if len(self._signals) >= MOST_SIGNALS or (unit is None and len(self._units) >= MOST_UNITS):
             raise Misuse(f"more than {MOST_SIGNALS} signals, or {MOST_UNITS} units")
         if unit is None:
-            unit = self._units[address, port] = ModbusUnit(address, port)
+            unit = self._units[place] = ModbusUnit(place) if place.allowed else AbsentUnit(place)
             unit.start()
         signal.seen = self._clock()
         signal.values = (0,) * signal.count
@@ -44,16 +47,24 @@ class ModbusUnits:
             unit.signals = tuple(each for each in unit.signals if each is not signal)
             if not unit.signals:
                 unit.end()
-                del self._units[unit.address, unit.port]
+                del self._units[unit.place]
 
     def signal(self, name: str) -> ModbusSignal:
-        """A signal that the program uses. Raises Misuse: there is none of this name."""
+        """A signal. Raises Misuse: there is none of this name."""
         if name not in self._signals:
             raise Misuse(f"signal_name: there is no signal {name[:20]!r}")
-        found = self._signals[name][1]
-        if not found.used:
-            found.used, found.seen = True, self._clock()
-        return found
+        return self._signals[name][1]
+
+    def read(self, name: str) -> tuple[int, ...]:
+        """What a signal was when it was in order last.
+
+        Raises:
+            Misuse: there is none of this name, or it has been out of order for longer than it may be.
+        """
+        signal = self.signal(name)
+        if self.invalid_for(signal) > signal.watchdog:
+            raise Misuse(self._problem(*self._signals[name]))
+        return signal.values
 
     def __contains__(self, name: str) -> bool:
         return name in self._signals
@@ -74,25 +85,30 @@ class ModbusUnits:
         signal.due = 0.0
         unit.hurry()
 
-    def units_at(self, address: str) -> list[ModbusUnit]:
+    def units_at(self, place: UnitPlace) -> list[Unit]:
         """Those at an address, at whatever port."""
-        return [unit for (host, _), unit in self._units.items() if host == address]
-
-    def begin(self) -> None:
-        """A program begins, which has used no signal yet."""
-        for _, signal in self._signals.values():
-            signal.used = False
+        return [unit for at, unit in self._units.items() if (at.address, at.allowed) == (place.address, place.allowed)]
 
     def step(self) -> str:
-        """One tick of the robot; what the program uses and is out of order for longer than it may be, in words, or ""."""
-        clock, problem = self._clock(), ""
+        """One tick of the robot; what people have not been told of a signal, or of all signals of a unit, in words, or ""."""
+        clock = self._clock()
+        late: tuple[Unit, ModbusSignal] | None = None
         for unit, signal in self._signals.values():
             if signal.valid:
                 signal.seen = clock
-            elif signal.used and clock - signal.seen > signal.watchdog and not problem:
-                why = f"exception {signal.device_error}" if signal.connected else f"no answer from {unit.address}:{unit.port}"
-                problem = f"Modbus signal {signal.name}: {why} for {signal.watchdog:g} s"
-        return problem
+            elif late is None and not signal.told and clock - signal.seen > signal.watchdog:
+                late = unit, signal
+        if late is None:
+            return ""
+        unit, signal = late
+        for each in (signal,) if signal.connected else unit.signals:
+            each.told = True
+        return self._problem(unit, signal)
+
+    def _problem(self, unit: Unit, signal: ModbusSignal) -> str:
+        host = f"{unit.place.address[:SHOWN]}:{unit.place.port}"
+        why = f"exception {signal.device_error}" if signal.connected else f"no answer from {host}"
+        return f"Modbus signal {signal.name}: {why} for {signal.watchdog:g} s"
 
     @property
     def used(self) -> bool:

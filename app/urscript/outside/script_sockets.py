@@ -134,14 +134,16 @@ class ScriptSockets:
         self._hosts = hosts
         self._sockets: dict[str, ScriptSocket] = {}
 
-    def begin(self, host: str, port: int, name: str) -> tuple[ScriptSocket, tuple[str, int]]:
-        """Begin a connection; one of the same name is ended.
+    def begin(self, host: str, port: int, name: str) -> tuple[ScriptSocket, tuple[str, int]] | None:
+        """Begin a connection; one of the same name is ended. None: the host may not be called.
 
         Raises:
-            Misuse: there are too many, or the address is not allowed.
+            Misuse: there are too many.
         """
-        address = self._hosts.address(host)
         self.close(name)
+        address = self._hosts.reached(host)
+        if address is None:
+            return None
         if len(self._sockets) >= MOST:
             raise Misuse(f"more than {MOST} sockets")
         connection = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)

@@ -46,7 +46,6 @@ class RobotMemory:
 
     def begin_program(self) -> None:
         """A program begins."""
-        self.units.begin()
         self.installed.begin()
 
     def end_program(self) -> None:
@@ -54,7 +53,7 @@ class RobotMemory:
         self.installed.end()
 
     def step(self) -> str:
-        """One tick; why the program that runs cannot go on, or ""."""
+        """One tick; what people are to be told, or ""."""
         self.installed.step()
         self.encoders.step()
         return self.units.step() if self.units.used else ""

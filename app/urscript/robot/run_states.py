@@ -8,7 +8,8 @@ from app.urscript.outside.modbus_units import ModbusUnits
 from pendant.settings.schema import ticks
 
 LOW_STOPPED, HIGH_STOPPED, HIGH_RUNNING = 1, 2, 3
-"""Choices of a run state: low or high while no program runs; high while one runs, and low while none does."""
+"""Choices of a run state: low or high while no program runs; high while one runs, and low while none does. A register that is low
+is 0, one that is high is 1."""
 
 KEPT = ticks(0.1)
 """An input's wish for free-drive lasts so long after it was seen: some ticks more than one."""
@@ -75,7 +76,7 @@ class InstalledSignals:
         record = self._cabinet.record
         if isinstance(number, str):
             if number in self._units:
-                self._units.write(number, [int(on)])
+                self._units.write(number, [int(on)] * self._units.signal(number).taken)
         elif kind is OutputKind.DIGITAL:
             set_outputs(record, 1 << number, on << number)
         elif kind is OutputKind.ANALOG:
@@ -86,7 +87,7 @@ class InstalledSignals:
     def _high(self, kind: OutputKind, number: int | str) -> bool:
         record = self._cabinet.record
         if isinstance(number, str):
-            return number in self._units and any(self._units.signal(number).values)
+            return number in self._units and self._units.signal(number).valid and any(self._units.signal(number).values)
         if kind is OutputKind.REGISTER:
             return read_bit(record, "input", number)
         return bool(int(record.field("actual_digital_input_bits").item()) >> number & 1)

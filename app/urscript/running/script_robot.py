@@ -36,7 +36,7 @@ class ScriptRobot:
     Args:
         cabinet: the robot.
         arm: moves it.
-        hosts: that this script may call.
+        senders: addresses other than this machine's that this script may call.
         tell: takes what the script tells.
         memory: what the robot keeps from one program to the next.
     """
@@ -45,14 +45,15 @@ class ScriptRobot:
         self,
         cabinet: Cabinet,
         arm: ArmSide,
-        hosts: AllowedHosts,
+        senders: frozenset[str],
         tell: Callable[[Told], None],
         *,
         memory: RobotMemory,
     ) -> None:
         self._cabinet, self._tell, self.memory = cabinet, tell, memory
-        self.arm, self.hosts, self.record, self.seed = arm, hosts, cabinet.record, cabinet.simulation.scenario.seed
-        self.sockets = ScriptSockets(hosts)
+        self.arm, self.record, self.seed = arm, cabinet.record, cabinet.simulation.scenario.seed
+        self.hosts = AllowedHosts(senders, self.say)
+        self.sockets = ScriptSockets(self.hosts)
         self.watchdog: tuple[str, int, str] | None = None  # variable, ticks that it may be silent, action
         self.asks: list[Ask] = []  # for the tick that begins
         self.tool: Tool | None = None  # to be used from now on
@@ -192,12 +193,13 @@ class ScriptRobot:
             )
 
     def _watch(self, name: str, frequency: float, action: str) -> None:
-        if action not in ("pause", "stop", "ignore"):
+        variable, done = name.lower(), action.lower()  # the maker's own example of RTDE writes "PAUSE"
+        if done not in ("pause", "stop", "ignore"):
             raise Misuse(f'action: {action!r}; expected "pause", "stop" or "ignore"')
-        if not isinstance(name, str) or not name.startswith("input_"):
+        if not variable.startswith("input_"):
             raise Misuse(f"variable_name: {name!r} is no input of RTDE")
         silent = 0 if frequency == 0.0 else math.ceil(TICK_RATE / frequency)
-        self.watchdog = None if action == "ignore" or not silent else (name, silent, action)
+        self.watchdog = None if done == "ignore" or not silent else (variable, silent, done)
 
 
 class OfferedScript(NamedTuple):

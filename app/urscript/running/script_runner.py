@@ -12,7 +12,6 @@ from app.urscript.language import tree
 from app.urscript.language.reading import read_script
 from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.machine import Machine
-from app.urscript.outside.hosts import AllowedHosts
 from app.urscript.robot.robot_memory import RobotMemory
 from app.urscript.running.garbage import uncollected
 from app.urscript.running.input_watchdog import InputWatchdog
@@ -154,7 +153,7 @@ class ScriptRunner:
         state = self.cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
-        robot = ScriptRobot(self.cabinet, self.arm, AllowedHosts(hosts), self.tell, memory=self.memory)
+        robot = ScriptRobot(self.cabinet, self.arm, hosts, self.tell, memory=self.memory)
         self._orders.let_go()
         with uncollected(len(text)):
             body = read_script(text)
@@ -183,9 +182,9 @@ class ScriptRunner:
             if running.machine.breathless is not None and not self._warned:
                 self._warned = True
                 self.tell(Told(Telling.TEXT, BREATHLESS.format(running.machine.breathless.line), running.machine.script.name))
-        problem = self.memory.step()
-        if problem:
-            self._end(self._unable(problem))
+        found = self.memory.step()
+        if found:
+            self._note(found)
         if self._beside:
             inputs = self._beside.step(inputs)
         equips = inputs is not NOTHING and bool(inputs.load or inputs.tool or inputs.tools)
@@ -205,6 +204,13 @@ class ScriptRunner:
             self._end(self._unable(refusal or self.arm.refusal))
         elif refusal and refusal == self.arm.refusal:  # nobody waits for what was refused
             self._end(self._unable(refusal))
+
+    def _note(self, text: str) -> None:
+        """Tell people something; while a program runs, it counts as one of its messages."""
+        if self._running is not None:
+            self._running.robot.say(text)
+        else:
+            self.tell(Told(Telling.TEXT, printable(text)))
 
     def _unable(self, reason: str) -> ScriptTrouble | None:
         """Why the arm could not do what the script asked for, at the line that it has come to."""

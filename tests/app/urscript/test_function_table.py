@@ -7,7 +7,6 @@ import pytest
 
 from app.urscript.functions.library_of_functions import builtins_of
 from app.urscript.machine.signature import Builtin
-from app.urscript.outside.hosts import AllowedHosts
 from app.urscript.running.script_robot import ScriptRobot
 from tests.app.urscript.function_table import AS_DOCUMENTED, DIFFERENT, NOT_THERE, PAGE, signature, table
 from tests.app.urscript.script_bench import ScriptBench
@@ -20,7 +19,7 @@ def bench() -> ScriptBench:
 
 @pytest.fixture(scope="module")
 def functions(bench: ScriptBench) -> dict[str, Builtin]:
-    robot = ScriptRobot(bench.robot.cabinet, bench.runner.arm, AllowedHosts(), print, memory=bench.runner.memory)
+    robot = ScriptRobot(bench.robot.cabinet, bench.runner.arm, frozenset(), print, memory=bench.runner.memory)
     return builtins_of(robot, deque())
 
 
