@@ -12,7 +12,7 @@ from app.files.checked import BadInput, convert, load
 from app.runs.jobs import Job, run_all
 from app.runs.junit import junit, write
 from app.runs.runner import RunOutcome
-from app.runs.seed_runs import NotMet, NearestToBound, gathered, seeds_in
+from app.runs.seed_runs import NearestToBound, NotMet, gathered, seeds_in
 from app.session.expectation_watch import Verdict
 from app.session.session_file import KINDS, Session, bundled, find, find_all, schema_of
 
