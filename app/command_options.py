@@ -38,6 +38,10 @@ Out = Annotated[
     Path, typer.Option(help="Folder for events.jsonl, log.mcap, summary.json, report.html; of several sessions, a folder each.")
 ]
 Seed = Annotated[int | None, typer.Option(help="Seed in place of the file's.", min=0, max=2**31 - 1)]
+Seeds = Annotated[
+    str | None,
+    typer.Option(metavar="SEEDS", help="Run each session at each of these seeds, such as 1-12 or 1,3,7-9.", show_default=False),
+]
 Offset = Annotated[int, typer.Option("--port-offset", help="Added to all ports, for a second robot.", min=0, max=30000)]
 Programs = Annotated[
     Path | None,

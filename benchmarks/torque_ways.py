@@ -90,7 +90,7 @@ def hold(way: Way) -> Score:
     scenario = Scenario(seed=way.seed, payload_true=load, payload_configured=load)
     use = replace(JointControl(), fed_back=way.fed_back)
     simulation = Simulation(load_arm("ur5e"), scenario, Settings(joint_control=use))
-    simulation.plant.friction.factor[:] = way.factor
+    simulation.plant.wear(slice(None), way.factor)
     run(simulation, 1.0)
     lose(simulation, way.lost)
     run(simulation, 1.5)

@@ -238,7 +238,7 @@ class Simulation:
         elif isinstance(change, SensorFault):
             self.sensors.fault(change)
         elif isinstance(change, FrictionChange):
-            plant.friction.factor[self._joints(change.joint)] = change.factor
+            plant.wear(self._joints(change.joint), change.factor)
         elif isinstance(change, Temperature):
             plant.temperature[self._joints(change.joint)] = change.celsius
         elif isinstance(change, MoveObject):

@@ -10,6 +10,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from app.runs.runner import RunOutcome
+from app.runs.seed_runs import SessionAtSeeds
 from app.session.session_file import Session
 from pendant.tick.modes import Mode
 
@@ -76,3 +77,24 @@ def show_all(names: list[str], outcomes: list[RunOutcome], out: Path) -> None:
     console.print(table)
     failed = sum(not outcome.passed for outcome in outcomes)
     console.print(f"{len(outcomes) - failed} sessions passed, {failed} not; results in {escape(str(out))}")
+
+
+def show_seeds(found: list[SessionAtSeeds], out: Path) -> None:
+    """Print what became of sessions at many seeds: a line each, under it what was not met, and what was met most narrowly."""
+    table = Table("", "session", "passed", box=None, pad_edge=False)
+    for each in found:
+        mark = "[bold red]FAIL[/bold red]" if each.failed else "[green]pass[/green]"
+        table.add_row(mark, escape(each.name), f"{each.runs - len(each.failed)} of {each.runs}")
+        for missed in each.missed:
+            seeds = f"seed{'s' if len(missed.seeds) > 1 else ''} {', '.join(map(str, missed.seeds))}"
+            table.add_row("", escape(f"  {seeds}: expected {missed.expected}; seen: {missed.seen}"))
+        if each.nearest is not None:
+            expected, seed, seen, margin = each.nearest
+            table.add_row("", escape(f"  nearest to its bound, by {margin:.1%}: {expected}; seen: {seen}, at seed {seed}"))
+    console = Console()
+    console.print(table)
+    runs, failed = sum(each.runs for each in found), sum(len(each.failed) for each in found)
+    whole = sum(not each.failed for each in found)
+    console.print(
+        f"{whole} of {len(found)} sessions passed at every seed, {runs - failed} of {runs} runs; results in {escape(str(out))}"
+    )

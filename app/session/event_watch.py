@@ -1,9 +1,10 @@
 """Follows what is told: events, tones, and the periods as interfaces show them."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.session.expectation_watch import Watch, at
+from app.session.expectation_watch import Watch, at, margin_within
 from app.session.expectations import ContactDelay, Countdown, Happens, Heard, Never, NumberRange, Period
 from app.session.triggers import Trigger
 from app.tones import tone_for
@@ -27,6 +28,7 @@ class EventWatch(Watch):
     wanted: Happens | Never = field(kw_only=True)
     found: list[int] = field(default_factory=list)
     other: str = ""  # the first whose numbers are others
+    nearest: float = math.inf  # the smallest margin of a number of those found
 
     def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
@@ -40,8 +42,15 @@ class EventWatch(Watch):
         outside = [(name, event.values.get(name)) for name, span in self.wanted.numbers.items() if not _within(event, name, span)]
         if not outside:
             self.found.append(tick)
+            for name, span in self.wanted.numbers.items():
+                share = margin_within(float(event.values[name]), span.min, span.max)
+                self.nearest = self.nearest if share is None else min(self.nearest, share)
         elif not self.other:
             self.other = f", but {', '.join(f'{name} {value}' for name, value in outside)} at {at(tick)}"
+
+    def margin(self) -> float | None:
+        """See `Watch.margin`."""
+        return self.nearest if isinstance(self.wanted, Happens) and math.isfinite(self.nearest) else None
 
     def settled(self) -> bool:
         """See `Watch.settled`."""
@@ -206,6 +215,10 @@ class DelayWatch(Watch):
         """See `Watch.expected`."""
         change = "touch" if self.wanted.gained else "parting"
         return f"event {self.wanted.kind.value} at most {self.wanted.max:g} s after the true {change} {self.span()}"
+
+    def margin(self) -> float | None:
+        """See `Watch.margin`."""
+        return None if self.delay is None or self.early is not None else margin_within(self.delay * TICK, None, self.wanted.max)
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""

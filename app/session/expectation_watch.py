@@ -18,6 +18,7 @@ class Verdict:
     expected: str
     seen: str  # with the time at which it was seen
     looked: bool = True  # its moment or interval came, so that something could be seen
+    margin: float | None = None  # how far within the nearest of its bounds, as a share of that bound; None: no number is bounded
 
 
 @dataclass(slots=True)
@@ -73,7 +74,11 @@ class Watch:
         if self.last < start + (self.end if self.end is not None else self.begin) and not self.settled():
             return Verdict(False, self.expected(), f"the session ended at {at(self.last)}, before the interval did", False)
         passed, seen = self.judge()
-        return Verdict(passed, self.expected(), seen)
+        return Verdict(passed, self.expected(), seen, margin=self.margin())
+
+    def margin(self) -> float | None:
+        """How far what was seen lies within the nearest bound, as a share of that bound; None where no number is bounded."""
+        return None
 
     def settled(self) -> bool:
         """Whether the verdict cannot change any more, although the interval has not ended."""
@@ -97,6 +102,15 @@ class Watch:
         since = "" if self.trigger.after is None else f' after "{self.trigger.after}"'
         until = "the end" if self.end is None else at(self.end)
         return (f"at {until}" if self.begin == self.end else f"from {at(self.begin)} to {until}") + since
+
+
+def margin_within(value: float, least: float | None, most: float | None) -> float | None:
+    """How far `value` lies within the nearest of two bounds, as a share of that bound: negative beyond it.
+
+    None where neither is a number but zero: of zero there is no share.
+    """
+    found = [(value - bound) * sign / abs(bound) for bound, sign in ((least, 1.0), (most, -1.0)) if bound]
+    return min(found) if found else None
 
 
 @dataclass(slots=True)
@@ -134,6 +148,12 @@ class StateWatch(Watch):
         state = ", ".join(f"{word} {name}" for word, name in words if name is not None)
         since = "" if self.trigger.after is None else f' after "{self.trigger.after}"'
         return f"{state} by {wanted.by:g} s{since}" if wanted.by is not None else f"{state} {self.span()}"
+
+    def margin(self) -> float | None:
+        """See `Watch.margin`."""
+        if self.wanted.by is None or self.met is None or self.trigger.happened is None:
+            return None
+        return margin_within((self.met - self.trigger.happened) * TICK, None, self.wanted.by)
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""

@@ -8,7 +8,7 @@ from msgspec import Meta
 from app.session.triggers import After
 from pendant.event_table import TABLE
 from pendant.events.event import Kind
-from pendant.settings.bounds import Signed, Span, Time
+from pendant.settings.bounds import Signed, Span, Text, Time
 from pendant.tick.modes import Mode, Phase
 from sim.arm.scenario import Vector
 
@@ -34,6 +34,8 @@ OF_A_JOINT = ("joint_angle", "joint_speed", "tracking_error", "friction_error", 
 
 class Expectation(After, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="expect"):
     """Base of all expectations. With `after`, all their times count from there."""
+
+    why: Text = ""  # where its bounds come from, or why the claim does not depend on them
 
 
 class During(Expectation, frozen=True, kw_only=True):

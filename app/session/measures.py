@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.session.event_watch import watch_told
-from app.session.expectation_watch import StateWatch, Watch, at
+from app.session.expectation_watch import StateWatch, Watch, at, margin_within
 from app.session.expectations import (
     AnyExpectation,
     Compared,
@@ -87,6 +87,11 @@ class BoundsWatch(Watch):
     def expected(self) -> str:
         """See `Watch.expected`."""
         return f"{self.name()} {bounds(self.min, self.max)} {self.unit()} {self.span()}"
+
+    def margin(self) -> float | None:
+        """See `Watch.margin`."""
+        found = [margin_within(self.low[0], self.min, None), margin_within(self.high[0], None, self.max)]
+        return min((share for share in found if share is not None and math.isfinite(share)), default=None)
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""
@@ -178,11 +183,20 @@ class ComparedWatch(ValueWatch):
         measure = "root mean square of" if wanted.measure == "mean_square" else "largest"
         return f"{measure} {self.name()} {bounds(self.min, self.max)} times that with {settings} {self.span()}"
 
+    @property
+    def ratio(self) -> float:
+        """The measure over what it is in the other run; nan where there is nothing to compare."""
+        return self.measured / self.other if self.count and self.other > 0.0 else math.nan
+
+    def margin(self) -> float | None:
+        """See `Watch.margin`."""
+        return None if math.isnan(self.ratio) else margin_within(self.ratio, self.min, self.max)
+
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""
-        if not self.count or not self.other > 0.0:
+        ratio = self.ratio
+        if math.isnan(ratio):
             return False, "nothing was measured"
-        ratio = self.measured / self.other
         within = (self.min is None or ratio >= self.min) and (self.max is None or ratio <= self.max)
         return within, f"{ratio:.3g} times, {self.measured:.4g} {self.unit()} over {self.other:.4g} {self.unit()}"
 
@@ -192,10 +206,14 @@ class ReachWatch(ValueWatch):
     """Follows `Reaches`."""
 
     met: int | None = None  # first tick of the interval in which it was within bounds
+    best: float = -math.inf  # the largest margin of a tick
 
     def number(self, value: float, tick: int) -> None:
         """See `BoundsWatch.number`."""
         BoundsWatch.number(self, value, tick)
+        share = margin_within(value, self.min, self.max)
+        if share is not None and share > self.best:
+            self.best = share
         above = self.min is None or value >= self.min
         if self.met is None and above and (self.max is None or value <= self.max):
             self.met = tick
@@ -207,6 +225,10 @@ class ReachWatch(ValueWatch):
     def name(self) -> str:
         """See `BoundsWatch.name`."""
         return ValueWatch.name(self) + " at some time"
+
+    def margin(self) -> float | None:
+        """See `Watch.margin`: of the tick that was farthest within."""
+        return self.best if math.isfinite(self.best) else None
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""

@@ -34,7 +34,7 @@ class SensorFault(TrueChange, tag="sensor", frozen=True, forbid_unknown_fields=T
 
 
 class FrictionChange(TrueChange, tag="friction", frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """True friction of a joint (None: all) times `factor` (wear, grease)."""
+    """True friction of a joint (None: all), on both sides of its gear, is `factor` times that when new (wear, grease)."""
 
     joint: str | None = None
     factor: Factor

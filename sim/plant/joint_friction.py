@@ -58,10 +58,16 @@ class Friction:
         self.load: Array = own["load"]  # rise with |tau_J| (n,) [N·m per N·m]
         self.per_kelvin: Array = self.record["per_kelvin"]  # relative change a kelvin at the reference temperature (1,)
         self.factor: Array = own["factor"]
-        """Wear or grease: a factor a joint, 1 when new."""
+        """Wear or grease, of both sides: a factor a joint, 1 when new. `wear` changes it."""
         self.factor[:] = 1.0
+        self._new = self.output_coulomb.copy(), self.output_viscous.copy()
         own["slowest"], own["fastest"] = root[0], root[-1]
         own["temperature"], own["per_kelvin"] = frictions.temperature, frictions.per_kelvin
+
+    def wear(self, joints: slice | int, factor: float) -> None:
+        """The friction of some joints, on both sides, becomes `factor` times what it is when new."""
+        self.factor[joints] = factor
+        self.output_coulomb[:], self.output_viscous[:] = (new * self.factor for new in self._new)
 
 
 @kernel

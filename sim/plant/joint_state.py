@@ -13,6 +13,9 @@ Array = NDArray[np.float64]
 
 SIGN_SPEED = 0.01  # [rad/s]
 
+LEAST_RUBBING = 1e-3
+"""MuJoCo's bristles divide by the torque at which they slide: a joint without friction has this [N·m], less than any seal's."""
+
 FASTEST = 1e3
 """No joint is faster [rad/s]; one that is shows that the physics diverged."""
 
@@ -114,7 +117,7 @@ def drive(plant, friction, inputs, torque) -> None:
     for i in range(own.rubs.size):
         own.friction_in[i] += own.held[i]
         row = written.friction[own.rubs[i]]
-        row[3] = row[4] = own.friction_in[i]
+        row[3] = row[4] = max(own.friction_in[i], LEAST_RUBBING)
         written.applied[own.dof_theta[i]] = torque[i]
 
 

@@ -12,7 +12,7 @@ from sim.arm.scenario import Scenario
 from sim.plant.applied_touches import Hands
 from sim.plant.attached_payload import Payload
 from sim.plant.joint_friction import Friction
-from sim.plant.joint_state import drive, finish, gather, plant_record, poses, sliding
+from sim.plant.joint_state import LEAST_RUBBING, drive, finish, gather, plant_record, poses, sliding
 from sim.plant.model import SENSORS, Step, model_of
 from sim.plant.objects import set_contact_stiffness
 from sim.plant.touch import Touch
@@ -59,6 +59,7 @@ class Plant:
         self._brakes, self._braked = np.array(arm.limits.torque), False
         self._held, self._heat = own["held"], own["heat"]
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
+        self._rubs_outside = np.array([model.actuator(f"friction/q/{name}").id for name in joints])
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
         self._parts = {model.body(int(i)).name: int(i) for i in self._links}
         self._parts["tool"] = self._parts["flange"]
@@ -165,6 +166,13 @@ class Plant:
             self._warm()
         if self.payload.falling:
             self.payload.fall(self.step.tick)
+
+    def wear(self, joints: slice | int, factor: float) -> None:
+        """The true friction of some joints, on both sides, becomes `factor` times what it is when new (wear, grease)."""
+        self.friction.wear(joints, factor)
+        model, at = self.model, self._rubs_outside
+        model.actuator_biasprm[at, 3] = model.actuator_biasprm[at, 4] = np.maximum(self.friction.output_coulomb, LEAST_RUBBING)
+        model.actuator_damping[at] = self.friction.output_viscous
 
     def _brake(self, braked: bool) -> None:
         """Close or open the brakes: closed, the rotors sit on far stiffer bristles, which take over the torque of the soft ones.

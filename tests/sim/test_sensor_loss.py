@@ -64,7 +64,7 @@ def test_a_program_goes_on_without_output_encoders_or_currents(sensor: str, chan
 
 def test_friction_is_not_learned_without_its_current() -> None:
     bench = Bench(Scenario(seed=4))
-    bench.plant.friction.factor[:] = 1.4
+    bench.plant.wear(slice(None), 1.4)
     bench.start(*STEPS)
     lose(bench, "current", 0)
     terms = bench.simulation.estimator.friction.terms

@@ -12,6 +12,7 @@ from app.files.checked import BadInput, convert, load
 from app.runs.jobs import Job, run_all
 from app.runs.junit import junit, write
 from app.runs.runner import RunOutcome
+from app.runs.seed_runs import NearestToBound, NotMet, gathered, seeds_in
 from app.session.expectation_watch import Verdict
 from app.session.session_file import KINDS, Session, bundled, find, find_all, schema_of
 
@@ -151,3 +152,53 @@ def test_the_command_prints_a_schema(monkeypatch: pytest.MonkeyPatch, capsys: py
         jsonschema.Draft202012Validator.check_schema(msgspec.json.decode(capsys.readouterr().out))
     assert pendant(monkeypatch, "schema", "poem") == 2
     assert "one of session, configuration" in capsys.readouterr().err
+
+
+MOVED: dict[str, Any] = {"expectations": [{"expect": "displacement", "max": 0.01, "to": 0.1}]}
+
+
+def test_a_session_runs_at_each_seed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    files(tmp_path, good=MOVED, bad={"expectations": [{"expect": "state", "mode": "RUN", "at": 0.05}]})
+    out = tmp_path / "out"
+    assert pendant(monkeypatch, "run", str(tmp_path), "--seeds", "3,1-2", "--out", str(out), "--junit", str(out / "j.xml")) == 1
+    shown = capsys.readouterr().out
+    assert "1 of 2 sessions passed at every seed, 3 of 6 runs" in shown
+    assert "seeds 3, 1, 2: expected mode RUN at 0.050 s" in shown
+    assert "nearest to its bound, by" in shown
+    assert (out / "good" / "seed-2" / "events.jsonl").is_file()
+    names = [suite.get("name") for suite in ElementTree.parse(out / "j.xml").getroot()]
+    assert names == [f"{name} at seed {seed}" for name in ("bad", "good") for seed in (3, 1, 2)]
+    assert pendant(monkeypatch, "run", str(tmp_path / "good.yaml"), "--seeds", "7", "--out", str(out)) == 0
+    assert (out / "seed-7" / "events.jsonl").is_file()
+
+
+def test_seeds_that_are_none_are_refused_before_anything_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    files(tmp_path, good={})
+    for wrong in ("", "x", "3-1", "1,,2", "-1", "1-2-3", "1,1", "2147483648", "0-1000", "1-900,1000-1900"):
+        assert pendant(monkeypatch, "run", str(tmp_path), f"--seeds={wrong}") == 2, wrong
+        assert "such as 1-12 or 1,3,7-9" in capsys.readouterr().err
+    assert pendant(monkeypatch, "run", str(tmp_path), "--seeds", "1-2", "--seed", "3") == 2
+    assert "either --seed or --seeds" in capsys.readouterr().err
+
+
+def test_seeds_are_numbers_and_ranges() -> None:
+    assert seeds_in("1-3") == [1, 2, 3]
+    assert seeds_in("9, 1-2,0") == [9, 1, 2, 0]
+
+
+def test_the_nearest_is_the_one_with_the_least_to_spare_and_what_failed_is_no_nearest() -> None:
+    def outcome(*verdicts: Verdict) -> RunOutcome:
+        return RunOutcome(verdicts=list(verdicts))
+
+    runs = {
+        4: outcome(Verdict(True, "a", "0.9", margin=0.1), Verdict(True, "b", "yes")),
+        5: outcome(Verdict(True, "a", "0.97", margin=0.03), Verdict(False, "b", "no", margin=-0.5)),
+        6: outcome(Verdict(False, "a", "1.1", margin=-0.1), Verdict(False, "b", "never")),
+    }
+    (found,) = gathered(("one", seed, outcome) for seed, outcome in runs.items())
+    assert (found.runs, found.failed) == (3, [5, 6])
+    assert found.missed == [NotMet("a", [6], "1.1"), NotMet("b", [5, 6], "no")]
+    assert found.nearest == NearestToBound("a", 5, "0.97", 0.03)

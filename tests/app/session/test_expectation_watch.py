@@ -4,7 +4,18 @@ import numpy as np
 import pytest
 
 from app.session.expectation_watch import Verdict, Watch
-from app.session.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, Reaches, State, Value
+from app.session.expectations import (
+    AnyExpectation,
+    Displacement,
+    Happens,
+    Heard,
+    Never,
+    NumberRange,
+    Period,
+    Reaches,
+    State,
+    Value,
+)
 from app.session.measures import watch
 from pendant.decision import Decision
 from pendant.events.event import Kind
@@ -269,3 +280,36 @@ def test_a_watch_says_which_ticks_it_needs() -> None:
 @pytest.mark.parametrize(("quiet", "needed"), [(True, [1, 2, 3]), (False, [1, 2, 3, *range(13, 24)])])
 def test_what_waits_for_an_event_needs_no_tick_without_one(quiet: bool, needed: list[int]) -> None:
     assert shown(watch(Never(kind=Kind.RESET, after="mode RUN", begin=0.02, end=0.04), JOINTS), quiet) == needed
+
+
+def far_at_the_end(tick: int) -> Snapshot:
+    """The flange goes 1 mm a tick along x until tick 51; the tool's speed rises by 0.1 m/s a tick until tick 30."""
+    return snapshot(tick, (0.001 * min(tick - 1, 50), 0.0, 0.0), v_tcp=0.1 * min(tick, 30))
+
+
+def touched(tick: int) -> Decision:
+    return happened(Kind.CONTACT_GAINED, tick, ratio=-0.6) if tick == 3 else decision()
+
+
+@pytest.mark.parametrize(
+    ("expectation", "decide", "margin"),
+    [
+        (Displacement(max=0.05, end=0.11), None, 0.0),
+        (Displacement(max=0.1, end=0.11), None, 0.5),
+        (Displacement(min=0.04, max=0.2, end=0.11), None, 0.25),
+        (Displacement(max=0.04, end=0.11), None, -0.25),
+        (Displacement(min=0.0, end=0.11), None, None),  # of zero there is no share
+        (Value(of="tcp_speed", max=4.0, end=0.11), None, 0.25),
+        (Reaches(of="tcp_speed", min=2.0, end=0.11), None, 0.5),
+        (State(mode=Mode.FREE_DRIVE, by=0.2), enters_at(50), 0.5),
+        (State(mode=Mode.FREE_DRIVE, by=0.08), enters_at(50), None),
+        (State(mode=Mode.TEACH, at=0.02), None, None),
+        (Happens(kind=Kind.CONTACT_GAINED, numbers={"ratio": NumberRange(max=-0.5)}), touched, 0.2),
+        (Never(kind=Kind.CONTACT_GAINED, numbers={"ratio": NumberRange(min=0.0)}, end=0.11), touched, None),
+    ],
+)
+def test_a_verdict_says_how_far_it_is_from_its_bound(
+    expectation: AnyExpectation, decide: Callable[[int], Decision] | None, margin: float | None
+) -> None:
+    verdict = follow(expectation, 60, decide or (lambda tick: decision()), far_at_the_end)
+    assert verdict.margin == (None if margin is None else pytest.approx(margin, abs=1e-9))

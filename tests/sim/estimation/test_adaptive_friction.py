@@ -24,7 +24,7 @@ def running(wear: float, mismatch: str = "on", speed: float = 0.3, *, helped: bo
     """A UR5e that moves to and fro by a program, its friction `wear` times what its file says, and fed forward if `helped`."""
     settings = apply(Settings(), {"joint_control.friction": helped})
     simulation = Simulation(UR5E, Scenario(seed=1003, mismatch=mismatch), settings)
-    simulation.plant.friction.factor[:] = wear
+    simulation.plant.wear(slice(None), wear)
     steps = tuple(JointMove(q=tuple(HOME + sign * 0.35), speed=speed, acceleration=0.5) for sign in (1.0, -1.0) * 12)
     simulation.tick(Wishes(Inputs(program=Program(steps=steps)), (), ()))
     for _ in range(150):

@@ -132,12 +132,13 @@ def test_energy_of_the_passive_arm_never_grows(arm: Arm) -> None:
     assert max(np.diff(means)) < 1e-3
 
 
-def friction_at(arm: Arm, joint: int, speed: float) -> float:
-    """Mean motor torque [N·m] that turns one joint at a constant speed without gravity, both directions."""
+def friction_at(arm: Arm, joint: int, speed: float, wear: float = 1.0) -> float:
+    """Mean motor torque [N·m] that turns one worn joint at a constant speed without gravity, both directions."""
     result = []
     for sign in (1.0, -1.0):
         plant = Plant(arm, Scenario(posture=[0.0, -1.57, 0.0, -1.57, 0.0, 0.0]))
         plant.model.opt.gravity[:] = 0.0
+        plant.wear(joint, wear)
         for prefix in ("q", "theta"):
             plant.data.qvel[dofs(plant, prefix)[joint]] = sign * speed  # already turning: no acceleration to wait for
         target = plant.theta.copy()
@@ -174,6 +175,12 @@ def test_friction_is_the_measured_curve_of_a_ur5e(joint: int) -> None:
         assert friction_at(UR5E, joint, speed) == pytest.approx(torque, rel=0.05), f"at {speed} rad/s"
 
 
+@pytest.mark.parametrize("wear", [0.0, 0.5, 2.0])
+def test_a_worn_joint_rubs_so_many_times_as_much_on_both_sides(wear: float) -> None:
+    """8 % of it are on the output side: a factor on the other side alone would leave 4 % too little at 2."""
+    assert friction_at(UR5E, 2, 1.5, wear) / friction_at(UR5E, 2, 1.5) == pytest.approx(wear, rel=0.01, abs=0.01)
+
+
 def test_friction_rises_with_load_and_wear_and_falls_with_temperature() -> None:
     friction = Friction(UR5E)
     speed, out = np.full(6, 0.5), np.zeros((4, 6))
@@ -181,7 +188,7 @@ def test_friction_rises_with_load_and_wear_and_falls_with_temperature() -> None:
     input_side(friction.record, Sliding(speed, np.zeros(6), cold), out[0])
     input_side(friction.record, Sliding(speed, np.full(6, -40.0), cold), out[1])
     input_side(friction.record, Sliding(speed, np.zeros(6), warm), out[2])
-    friction.factor[:] = 1.4
+    friction.wear(slice(None), 1.4)
     input_side(friction.record, Sliding(speed, np.zeros(6), cold), out[3])
     assert np.allclose(out[1] - out[0], 40.0 * np.array(UR5E.frictions.load))
     assert np.allclose(out[2] / out[0], 1.0 + 10.0 * UR5E.frictions.per_kelvin)
