@@ -26,7 +26,16 @@ from sim.exchange.desk import Wishes
 from sim.exchange.scoring import Glance
 from sim.exchange.snapshot import Snapshot
 from sim.exchange.told_force import told_force
-from sim.plant.changes import AnyChange, AttachPayload, DropPayload, FrictionChange, MoveObject, SensorFault, Temperature
+from sim.plant.changes import (
+    AnyChange,
+    AttachPayload,
+    DriveGripper,
+    DropPayload,
+    FrictionChange,
+    MoveObject,
+    SensorFault,
+    Temperature,
+)
 from sim.plant.model import Step
 from sim.plant.true_arm import Plant
 from sim.rigid_body.dynamics import Dynamics
@@ -231,7 +240,13 @@ class Simulation:
         elif isinstance(change, Temperature):
             plant.temperature[self._joints(change.joint)] = change.celsius
         elif isinstance(change, MoveObject):
+            if plant.gripper is not None and plant.gripper.state.held == change.name:
+                plant.gripper.drop()
             plant.world.place(change.name, change.position)
+        elif isinstance(change, DriveGripper):
+            if plant.gripper is None:
+                raise KeyError("a gripper: the tool that is mounted has none")
+            plant.gripper.order(change)
 
     def _joints(self, name: str | None) -> slice | int:
         if name is None:

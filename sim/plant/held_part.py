@@ -1,0 +1,163 @@
+"""A part that a gripper holds: while it does, the part is one with the payload, and its own body goes along without weight.
+
+Its shape on the payload (`carried/<name>`, sim.plant.objects) is what then touches the world; that of its own body touches nothing.
+"""
+
+from collections.abc import Callable, Sequence
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.arm.frames import quaternion_from_matrix
+from sim.arm.scenario import AnyObject, AnyPart, Load
+from sim.compiled.kernel import kernel
+from sim.gripping.grip_strength import HeldBody
+from sim.plant.attached_payload import Payload
+from sim.plant.objects import parts_of
+
+Array = NDArray[np.float64]
+
+NEVER = -10.0
+"""Margin of a pair that is out of use: no contact is so deep [m]."""
+
+
+class HeldParts:
+    """Takes a free part over to the payload, and gives it back.
+
+    Args:
+        model, data: MuJoCo's.
+        world: all objects.
+        payload: that grows by what is held.
+        flange: MuJoCo's number of the body F.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, world: Sequence[AnyObject], payload: Payload, flange: int
+    ) -> None:
+        self._model, self._data, self._payload, self._flange = model, data, payload, flange
+        self.parts = parts_of(world)
+        self.held: AnyPart | None = None
+        self.body = HeldBody(0.0, (0.0, 0.0, 0.0), (0.0,) * 6)
+        self._pose = np.zeros(7)  # of the held part in F
+        self._at, self._dof, self._geom = 0, 0, -1
+        names = [model.pair(k).name for k in range(model.npair)]
+        free = {part.name: f"object/{part.name}" for part in self.parts}
+        pairs = [{model.geom(int(g)).name for g in (model.pair_geom1[k], model.pair_geom2[k])} for k in range(model.npair)]
+        self._lying = {name: [k for k, both in enumerate(pairs) if free[name] in both] for name in free}
+        self._carried = {name: [k for k, both in enumerate(pairs) if f"carried/{name}" in both] for name in free}
+        self._fingers = {name: [k for k in lying if names[k].startswith("shape/finger")] for name, lying in self._lying.items()}
+        for name in free:
+            self._switch(self._carried[name], False)
+
+    def pose(self, part: AnyPart) -> tuple[Array, Array]:
+        """Where a part lies: position (3,) [m] and rotation (3, 3) in W."""
+        body = self._model.body(f"object/{part.name}").id
+        return self._data.xpos[body].copy(), self._data.xmat[body].reshape(3, 3).copy()
+
+    def shift(self, part: AnyPart, way: Array) -> None:
+        """Push a part aside by a way (3,) in W [m], as a finger does that is stronger than all friction."""
+        at = self._model.jnt_qposadr[self._model.joint(f"free/{part.name}").id]
+        self._data.qpos[at : at + 3] += way
+
+    def let_pass(self, part: AnyPart, passes: bool) -> None:
+        """Have the fingers pass by a part that is between them, or touch it."""
+        self._switch(self._fingers[part.name], not passes)
+
+    def take(self, part: AnyPart, aside: Array) -> None:
+        """Make a part one with the payload, `aside` (3,) in W of where it is [m]."""
+        model, data = self._model, self._data
+        p, R = self.pose(part)
+        p += aside
+        p_F, R_F = data.xpos[self._flange], data.xmat[self._flange].reshape(3, 3)
+        com, turn = R_F.T @ (p - p_F), R_F.T @ R
+        self._pose[:3], self._pose[3:] = com, quaternion_from_matrix(turn)
+        body = model.body(f"object/{part.name}").id
+        own = np.empty(9)
+        mujoco.mju_quat2Mat(own, model.body_iquat[body])
+        axes = turn @ own.reshape(3, 3)
+        I = axes @ np.diag(model.body_inertia[body]) @ axes.T  # noqa: E741
+        six = [float(moment) for moment in (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])]
+        x, y, z = com.tolist()
+        self.body = HeldBody(part.mass, (x, y, z), (six[0], six[1], six[2], six[3], six[4], six[5]))
+        joint = model.joint(f"free/{part.name}").id
+        self._at, self._dof = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
+        geom = self._geom = model.geom(f"carried/{part.name}").id
+        model.geom_pos[geom], model.geom_quat[geom] = self._pose[:3], self._pose[3:]
+        self._switch(self._lying[part.name], False)
+        self._switch(self._carried[part.name], True)
+        self.held = part
+        self._payload.grip(Load(mass=part.mass, com=[x, y, z], inertia=six))
+        self.follow()
+
+    def give(self, velocity: Callable[[Array], Array]) -> None:
+        """Let the held part go, with the velocity of the flange.
+
+        Args:
+            velocity: tells the flange's velocity (3,) in W [m/s] at a point (3,) in W [m].
+        """
+        part = self.held
+        assert part is not None
+        self.follow()
+        data = self._data
+        data.qvel[self._dof : self._dof + 3] = velocity(data.qpos[self._at : self._at + 3])
+        spin = np.empty(6)
+        mujoco.mj_objectVelocity(self._model, data, mujoco.mjtObj.mjOBJ_BODY, self._flange, spin, 0)
+        R = np.empty(9)
+        mujoco.mju_quat2Mat(R, data.qpos[self._at + 3 : self._at + 7])
+        data.qvel[self._dof + 3 : self._dof + 6] = R.reshape(3, 3).T @ spin[:3]
+        self._switch(self._carried[part.name], False)
+        self._switch(self._lying[part.name], True)
+        self.held, self._geom = None, -1
+        self._payload.grip(None)
+
+    def follow(self) -> None:
+        """Put the held part's own body where the flange has it, at rest: once a tick."""
+        data = self._data
+        _follow(data.xpos, data.xquat, self._flange, self._pose, data.qpos, data.qvel, self._at, self._dof)
+
+    def place(self, poses: Array, row: int) -> None:
+        """Write where the held part is into a row of poses (m, 7) in W."""
+        poses[row] = self._data.qpos[self._at : self._at + 7]
+
+    def touched(self) -> Array:
+        """What touches the held part elsewhere: force [N] and torque about its centre [N·m], in F (6,)."""
+        found, six, data = np.zeros(6), np.empty(6), self._data
+        if data.ncon == 0:
+            return found
+        geoms = data.contact.geom
+        R_F = data.xmat[self._flange].reshape(3, 3)
+        centre = data.geom_xpos[self._geom]
+        for k in np.flatnonzero((geoms == self._geom).any(axis=1)).tolist():
+            contact = data.contact[k]
+            mujoco.mj_contactForce(self._model, data, k, six)
+            sign = 1.0 if contact.geom[1] == self._geom else -1.0  # it acts on the second of the two
+            frame = contact.frame.reshape(3, 3)
+            force = sign * (frame.T @ six[:3])
+            torque = sign * (frame.T @ six[3:]) + np.cross(contact.pos - centre, force)
+            found[:3] += R_F.T @ force
+            found[3:] += R_F.T @ torque
+        return found
+
+    def _switch(self, pairs: Sequence[int], on: bool) -> None:
+        for k in pairs:
+            self._model.pair_margin[k] = 0.0 if on else NEVER
+
+
+@kernel
+def _follow(positions, orientations, flange, pose, qpos, qvel, at, dof) -> None:
+    """Write position and orientation of a body that is fixed to the flange."""
+    p, q = positions[flange], orientations[flange]
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    a, b, c = pose[0], pose[1], pose[2]
+    tx, ty, tz = y * c - z * b, z * a - x * c, x * b - y * a
+    qpos[at] = p[0] + a + 2.0 * (w * tx + y * tz - z * ty)
+    qpos[at + 1] = p[1] + b + 2.0 * (w * ty + z * tx - x * tz)
+    qpos[at + 2] = p[2] + c + 2.0 * (w * tz + x * ty - y * tx)
+    a, b, c, d = pose[3], pose[4], pose[5], pose[6]
+    qpos[at + 3] = w * a - x * b - y * c - z * d
+    qpos[at + 4] = w * b + x * a + y * d - z * c
+    qpos[at + 5] = w * c - x * d + y * a + z * b
+    qpos[at + 6] = w * d + x * c - y * b + z * a
+    for i in range(6):
+        qvel[dof + i] = 0.0
