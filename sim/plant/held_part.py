@@ -41,6 +41,7 @@ class HeldParts:
         self.body = HeldBody(0.0, (0.0, 0.0, 0.0), (0.0,) * 6)
         self._pose = np.zeros(7)  # of the held part in F
         self._at, self._dof, self._geom = 0, 0, -1
+        self._frames = (data.xmat, data.geom_xpos)
         names = [model.pair(k).name for k in range(model.npair)]
         free = {part.name: f"object/{part.name}" for part in self.parts}
         pairs = [{model.geom(int(g)).name for g in (model.pair_geom1[k], model.pair_geom2[k])} for k in range(model.npair)]
@@ -122,21 +123,16 @@ class HeldParts:
 
     def touched(self) -> Array:
         """What touches the held part elsewhere: force [N] and torque about its centre [N·m], in F (6,)."""
-        found, six, data = np.zeros(6), np.empty(6), self._data
+        data, found = self._data, np.zeros(6)
         if data.ncon == 0:
             return found
-        geoms = data.contact.geom
-        R_F = data.xmat[self._flange].reshape(3, 3)
-        centre = data.geom_xpos[self._geom]
-        for k in np.flatnonzero((geoms == self._geom).any(axis=1)).tolist():
-            contact = data.contact[k]
-            mujoco.mj_contactForce(self._model, data, k, six)
-            sign = 1.0 if contact.geom[1] == self._geom else -1.0  # it acts on the second of the two
-            frame = contact.frame.reshape(3, 3)
-            force = sign * (frame.T @ six[:3])
-            torque = sign * (frame.T @ six[3:]) + np.cross(contact.pos - centre, force)
-            found[:3] += R_F.T @ force
-            found[3:] += R_F.T @ torque
+        contacts = data.contact
+        geoms = contacts.geom
+        forces = np.zeros((len(geoms), 6))
+        for k, pair in enumerate(geoms.tolist()):
+            if self._geom in pair:
+                mujoco.mj_contactForce(self._model, data, k, forces[k])
+        _sum(forces, geoms, contacts.frame, contacts.pos, self._geom, self._frames, self._flange, found)
         return found
 
     def _switch(self, pairs: Sequence[int], on: bool) -> None:
@@ -161,3 +157,26 @@ def _follow(positions, orientations, flange, pose, qpos, qvel, at, dof) -> None:
     qpos[at + 6] = w * d + x * c - y * b + z * a
     for i in range(6):
         qvel[dof + i] = 0.0
+
+
+@kernel
+def _sum(forces, geoms, frames, points, own, places, flange, out) -> None:
+    """Add up the contact forces (m, 6) on a geom in F, with their torque about its middle; they act on a contact's second geom."""
+    R, centre = places[0][flange], places[1][own]
+    for k in range(geoms.shape[0]):
+        if geoms[k, 0] != own and geoms[k, 1] != own:
+            continue
+        sign = 1.0 if geoms[k, 1] == own else -1.0
+        f, t = np.zeros(3), np.zeros(3)
+        for i in range(3):
+            for j in range(3):
+                f[i] += sign * frames[k, 3 * j + i] * forces[k, j]
+                t[i] += sign * frames[k, 3 * j + i] * forces[k, 3 + j]
+        x, y, z = points[k, 0] - centre[0], points[k, 1] - centre[1], points[k, 2] - centre[2]
+        t[0] += y * f[2] - z * f[1]
+        t[1] += z * f[0] - x * f[2]
+        t[2] += x * f[1] - y * f[0]
+        for i in range(3):
+            for j in range(3):
+                out[i] += R[3 * j + i] * f[j]
+                out[3 + i] += R[3 * j + i] * t[j]

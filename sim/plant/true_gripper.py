@@ -71,9 +71,9 @@ class TrueGripper:
         return GripperState(drive.closing, moving, held, met, drive.opening, drive.wanted, stroke, drive.force, self._taken)
 
     @property
-    def detects(self) -> bool:
-        """It holds a part: its input is high."""
-        return self._parts.held is not None
+    def detected_input(self) -> int | None:
+        """Number of the digital input that is high, as it holds a part; None: it holds none."""
+        return None if self._parts.held is None else self._kind.detected_input
 
     def order(self, change: DriveGripper) -> None:
         """Do what a laboratory, a program or a client of it asks."""
@@ -90,7 +90,12 @@ class TrueGripper:
             drive.stop()
             return
         ends = {"close": 0.0, "open": drive.fingers.stroke}
-        drive.order(ends.get(change.command or "", change.opening), change.speed, change.force)
+        own, speed, force = drive.fingers, change.speed, change.force
+        if change.speed_share is not None:
+            speed = own.least_speed + change.speed_share * (own.most_speed - own.least_speed)
+        if change.force_share is not None:
+            force = own.least_force + change.force_share * (own.most_force - own.least_force)
+        drive.order(ends.get(change.command or "", change.opening), speed, force)
 
     def wired(self, high: int) -> None:
         """Follow the digital outputs, given as bits: where one of the two changes, and only one of them is on, it acts."""
