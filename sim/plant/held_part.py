@@ -14,12 +14,9 @@ from sim.arm.scenario import AnyObject, AnyPart, Load
 from sim.compiled.kernel import kernel
 from sim.gripping.grip_strength import HeldBody
 from sim.plant.attached_payload import Payload
-from sim.plant.objects import parts_of
+from sim.plant.objects import NOWHERE, parts_of, set_contact_stiffness
 
 Array = NDArray[np.float64]
-
-NEVER = -10.0
-"""Margin of a pair that is out of use: no contact is so deep [m]."""
 
 
 class HeldParts:
@@ -41,6 +38,9 @@ class HeldParts:
         self.body = HeldBody(0.0, (0.0, 0.0, 0.0), (0.0,) * 6)
         self._pose = np.zeros(7)  # of the held part in F
         self._at, self._dof, self._geom = 0, 0, -1
+        self._world = world
+        self._nowhere = [model.geom(name).id for name in NOWHERE] if self.parts else []
+        self._geoms = np.array([model.pair_geom1, model.pair_geom2])  # (2, pairs) as they are while in use
         self._frames = (data.xmat, data.geom_xpos)
         names = [model.pair(k).name for k in range(model.npair)]
         free = {part.name: f"object/{part.name}" for part in self.parts}
@@ -48,6 +48,7 @@ class HeldParts:
         self._lying = {name: [k for k, both in enumerate(pairs) if free[name] in both] for name in free}
         self._carried = {name: [k for k, both in enumerate(pairs) if f"carried/{name}" in both] for name in free}
         self._fingers = {name: [k for k in lying if names[k].startswith("shape/finger")] for name, lying in self._lying.items()}
+        self._lying = {name: [k for k in lying if k not in self._fingers[name]] for name, lying in self._lying.items()}
         for name in free:
             self._switch(self._carried[name], False)
 
@@ -64,6 +65,7 @@ class HeldParts:
     def let_pass(self, part: AnyPart, passes: bool) -> None:
         """Have the fingers pass by a part that is between them, or touch it."""
         self._switch(self._fingers[part.name], not passes)
+        set_contact_stiffness(self._model, self._world)
 
     def take(self, part: AnyPart, aside: Array) -> None:
         """Make a part one with the payload, `aside` (3,) in W of where it is [m]."""
@@ -136,8 +138,10 @@ class HeldParts:
         return found
 
     def _switch(self, pairs: Sequence[int], on: bool) -> None:
+        """Have pairs of shapes touch, or be two that never meet."""
+        model = self._model
         for k in pairs:
-            self._model.pair_margin[k] = 0.0 if on else NEVER
+            model.pair_geom1[k], model.pair_geom2[k] = self._geoms[:, k] if on else self._nowhere
 
 
 @kernel

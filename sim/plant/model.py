@@ -15,7 +15,7 @@ from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.arm.scenario import Fingers, Load, Scenario
 from sim.gripping.finger_shape import FINGERS, finger_poses, finger_size, palm_length
 from sim.plant.joint_friction import Friction
-from sim.plant.objects import WRIST, add_carried, add_object, pair_geoms, pair_own, pair_parts, parts_of
+from sim.plant.objects import WRIST, add_carried, add_nowhere, add_object, pair_geoms, pair_own, pair_parts, parts_of
 
 SUBSTEPS = 8
 """Physics steps a control tick: 0.25 ms. An explicit integrator needs less than 2 / w for the fastest series spring, w being its
@@ -142,6 +142,8 @@ def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
         _add_shapes(spec, arm, scenario)
     for item in scenario.world:
         add_object(spec, item)
+    if parts_of(scenario.world):
+        add_nowhere(spec)
     for part in parts_of(scenario.world):
         add_carried(payload, part)
     pair_geoms(spec, arm.chain.joints[0], scenario.world)

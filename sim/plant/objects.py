@@ -26,6 +26,7 @@ LIES = (0.004, 1.0)
 """Time constant [s] and damping ratio of what lies on something: it sinks in by some µm, and does not ring."""
 
 FIRM = (0.95, 0.99, 1e-3, 0.5, 2.0)  # constraint impedance of what lies on something
+NOWHERE = ("nowhere/0", "nowhere/1")
 HEAVY = 1e6  # mass of a moving object, that no arm pushes aside [kg]
 
 
@@ -76,6 +77,19 @@ def _shape(geom: mujoco.MjsGeom, part: AnyPart) -> None:
 def parts_of(world: Sequence[AnyObject]) -> list[AnyPart]:
     """The objects that lie about freely."""
     return [item for item in world if isinstance(item, FreeBox | FreeCylinder)]
+
+
+def add_nowhere(spec: mujoco.MjSpec) -> None:
+    """Add two balls that never meet anything: what pairs of shapes are pointed at that are out of use."""
+    for k, name in enumerate(NOWHERE):
+        spec.worldbody.add_geom(
+            name=name,
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[0.001, 0.0, 0.0],
+            pos=[0.0, 0.0, 1000.0 * (k + 1)],
+            contype=0,
+            conaffinity=0,
+        )
 
 
 def add_carried(payload: mujoco.MjsBody, part: AnyPart) -> None:
@@ -140,6 +154,8 @@ def set_contact_stiffness(model: mujoco.MjModel, world: Sequence[AnyObject]) -> 
         stiffness = SKIN if item is None else item.stiffness
         bodies = model.geom_bodyid[[model.pair_geom1[k], model.pair_geom2[k]]]
         weight = model.body_invweight0[bodies, 0].sum()
+        if weight == 0.0:
+            continue  # out of use (sim.plant.held_part)
         damping = 2.0 * DAMPING_RATIO * stiffness**0.5
         model.pair_solref[k] = -stiffness * weight * (1 - DEPTH), -damping * weight * (1 - DEPTH)
         if isinstance(item, TwoFrictions):

@@ -120,6 +120,8 @@ class TrueGripper:
                 self._draw()
         elif drive.moving:
             self._close(drive) if drive.wanted < drive.opening else self._open(drive)
+        elif self._passing:
+            self._clear(drive)
         self._spin = (float(motion[3]), float(motion[4]), float(motion[5]))
 
     def drop(self) -> None:
@@ -134,7 +136,6 @@ class TrueGripper:
             self._parts.give(self._velocity)
             self._taken = 0.0
             if drive is not None:
-                self._pass(part, True)
                 self._open(drive)
             return
         load = load_on_grip(motion, self._spin, self._span, body, self._parts.touched())
@@ -148,8 +149,6 @@ class TrueGripper:
         assert part is not None
         self._parts.give(self._velocity)
         self._taken, self._slipped = 0.0, part.name
-        if self._drive is not None:
-            self._pass(part, True)
 
     def _grip(self, part: AnyPart) -> Grip:
         """How it holds a part."""
@@ -202,14 +201,21 @@ class TrueGripper:
         self._show(drive)
 
     def _open(self, drive: FingerDrive) -> None:
-        """Fingers that open leave what is between them alone, until they stand wide."""
+        """Fingers that open leave what is between them alone."""
         drive.step(self._span)
         drive.closing = False
         self._slipped = ""
-        if not drive.moving:
-            for name in list(self._passing):
-                self._pass(next(part for part in self._parts.parts if part.name == name), False)
         self._show(drive)
+
+    def _clear(self, drive: FingerDrive) -> None:
+        """Fingers that stand still touch again what is not in them any more."""
+        point, axes = self._frame()
+        half = 0.5 * drive.opening
+        for part in [part for part in self._parts.parts if part.name in self._passing]:
+            p, R = self._parts.pose(part)
+            found = chord(part, R.T @ (point - p), R.T @ axes[:, 0])
+            if found is None or (-half <= found.begin and found.end <= half):
+                self._pass(part, False)
 
     def _between(self, part: AnyPart, point: Array, along: Array, opening: float) -> Chord | None:
         """The stretch of the fingers' way that lies in a part which is between them."""
