@@ -7,7 +7,21 @@ from msgspec import Meta
 
 import pendant.equipment.tools
 from pendant.equipment.load import Angles, Load, Vector
-from pendant.settings.bounds import Extent, Force, Friction, Line, Name, PartMass, Pressure, Share, Size, Span, Speed, Stiffness, Thickness
+from pendant.settings.bounds import (
+    Extent,
+    Force,
+    Friction,
+    Line,
+    Name,
+    PartMass,
+    Pressure,
+    Share,
+    Size,
+    Span,
+    Speed,
+    Stiffness,
+    Thickness,
+)
 from pendant.walls.definitions import AnyBorder
 
 __all__ = ["BARE", "AnyObject", "AnyPart", "Load", "Scenario", "ToolModel", "Vector", "table"]

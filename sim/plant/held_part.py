@@ -3,6 +3,7 @@
 Its shape on the payload (`carried/<name>`, sim.plant.objects) is what then touches the world; that of its own body touches nothing.
 """
 
+import math
 from collections.abc import Callable, Sequence
 
 import mujoco
@@ -17,6 +18,9 @@ from sim.plant.attached_payload import Payload
 from sim.plant.objects import NOWHERE, parts_of, set_contact_stiffness
 
 Array = NDArray[np.float64]
+
+SLID = 1e-3
+"""Way in the grip after which the payload's centre is set anew [m]."""
 
 
 class HeldParts:
@@ -82,7 +86,6 @@ class HeldParts:
         I = axes @ np.diag(model.body_inertia[body]) @ axes.T  # noqa: E741
         six = [float(moment) for moment in (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])]
         x, y, z = com.tolist()
-        self.body = HeldBody(part.mass, (x, y, z), (six[0], six[1], six[2], six[3], six[4], six[5]))
         joint = model.joint(f"free/{part.name}").id
         self._at, self._dof = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
         geom = self._geom = model.geom(f"carried/{part.name}").id
@@ -90,7 +93,7 @@ class HeldParts:
         self._switch(self._lying[part.name], False)
         self._switch(self._carried[part.name], True)
         self.held = part
-        self._payload.grip(Load(mass=part.mass, com=[x, y, z], inertia=six))
+        self._weigh(HeldBody(part.mass, (x, y, z), (six[0], six[1], six[2], six[3], six[4], six[5])))
         self.follow()
 
     def give(self, velocity: Callable[[Array], Array]) -> None:
@@ -119,6 +122,27 @@ class HeldParts:
         data = self._data
         _follow(data.xpos, data.xquat, self._flange, self._pose, data.qpos, data.qvel, self._at, self._dof)
 
+    def held_pose(self) -> tuple[Array, Array]:
+        """Where the held part is: position (3,) [m] and rotation (3, 3) in W."""
+        R = np.empty(9)
+        mujoco.mju_quat2Mat(R, self._data.qpos[self._at + 3 : self._at + 7])
+        return self._data.qpos[self._at : self._at + 3].copy(), R.reshape(3, 3)
+
+    def slide(self, along: Array, share: float) -> None:
+        """Move the held part in the grip, out of what it touches.
+
+        Args:
+            along: direction (3,) in F.
+            share: of the depth to which it is in what it touches.
+        """
+        contacts = self._data.contact
+        depth = -float(contacts.dist[(contacts.geom == self._geom).any(axis=1)].min())
+        self._pose[:3] += max(depth, 0.0) * share * along
+        self._model.geom_pos[self._geom] = self._pose[:3]
+        x, y, z = self._pose[:3].tolist()
+        if math.dist((x, y, z), self.body.com) > SLID:
+            self._weigh(self.body._replace(com=(x, y, z)))
+
     def place(self, poses: Array, row: int) -> None:
         """Write where the held part is into a row of poses (m, 7) in W."""
         poses[row] = self._data.qpos[self._at : self._at + 7]
@@ -136,6 +160,11 @@ class HeldParts:
                 mujoco.mj_contactForce(self._model, data, k, forces[k])
         _sum(forces, geoms, contacts.frame, contacts.pos, self._geom, self._frames, self._flange, found)
         return found
+
+    def _weigh(self, body: HeldBody) -> None:
+        """Make the held part's weight that of the payload."""
+        self.body = body
+        self._payload.grip(Load(mass=body.mass, com=list(body.com), inertia=list(body.inertia)))
 
     def _switch(self, pairs: Sequence[int], on: bool) -> None:
         """Have pairs of shapes touch, or be two that never meet."""

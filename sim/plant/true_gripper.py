@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import AnyPart, Cup, Fingers, ToolModel
 from sim.gripping.finger_drive import FingerDrive, GripperState, vacuum_force
-from sim.gripping.finger_shape import FINGERS, finger_poses
+from sim.gripping.finger_shape import FINGERS, THICKNESS, finger_poses
 from sim.gripping.grasp import Chord, chord, firm, seals
 from sim.gripping.grip_strength import Grip, load_on_grip, pad_radius, strength_taken
 from sim.plant.changes import DriveGripper
@@ -138,10 +138,24 @@ class TrueGripper:
             if drive is not None:
                 self._open(drive)
             return
-        load = load_on_grip(motion, self._spin, self._span, body, self._parts.touched())
+        touched = self._parts.touched()
+        load = load_on_grip(motion, self._spin, self._span, body, touched)
         self._taken = strength_taken(self._grip(part), load, body.com)
-        if self._taken > 1.0:
+        if self._taken > 1.0 and not self._slide(part, touched):
             self._lose()
+
+    def _slide(self, part: AnyPart, touched: Array) -> bool:
+        """A part that something else holds slides in the grip, as far as friction gives way to it; False: it is out of the grip."""
+        force = float(np.linalg.norm(touched[:3]))
+        if force == 0.0:
+            return False
+        self._parts.slide(touched[:3] / force, 1.0 - 1.0 / self._taken)
+        point, axes = self._frame()
+        p, R = self._parts.held_pose()
+        if self._drive is not None:
+            return chord(part, R.T @ (point - p), R.T @ axes[:, 0]) is not None
+        assert isinstance(self._kind, Cup)
+        return seals(part, R.T @ (point - p), R.T @ axes, self._kind.radius)
 
     def _lose(self) -> None:
         """The part slides out; it cannot be gripped again before the gripper has opened."""
@@ -209,13 +223,27 @@ class TrueGripper:
 
     def _clear(self, drive: FingerDrive) -> None:
         """Fingers that stand still touch again what is not in them any more."""
-        point, axes = self._frame()
-        half = 0.5 * drive.opening
         for part in [part for part in self._parts.parts if part.name in self._passing]:
-            p, R = self._parts.pose(part)
-            found = chord(part, R.T @ (point - p), R.T @ axes[:, 0])
-            if found is None or (-half <= found.begin and found.end <= half):
+            if not self._meets(part, drive):
                 self._pass(part, False)
+
+    def _meets(self, part: AnyPart, drive: FingerDrive) -> bool:
+        """A finger is in a part: looked at by lines through both of them, from the tips to the palm."""
+        point, axes = self._frame()
+        p, R = self._parts.pose(part)
+        own, tip = drive.fingers, self._tool.length - float(np.linalg.norm(self._point))
+        inner = 0.5 * drive.opening
+        outer = inner + THICKNESS
+        if float(np.linalg.norm(point - p)) > float(np.linalg.norm(part.size)) + own.finger + outer:
+            return False
+        for height in (tip, 0.5 * tip, 0.0, 0.5 * (tip - own.finger), tip - own.finger):
+            found = chord(part, R.T @ (point + height * axes[:, 2] - p), R.T @ axes[:, 0])
+            if found is None:
+                continue
+            left, right = found.begin < -inner and found.end > -outer, found.end > inner and found.begin < outer
+            if left or right:
+                return True
+        return False
 
     def _between(self, part: AnyPart, point: Array, along: Array, opening: float) -> Chord | None:
         """The stretch of the fingers' way that lies in a part which is between them."""
