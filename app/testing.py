@@ -104,6 +104,10 @@ class ServedRobot:
         """Change the true arm or world, such as `kind="drop_payload"`; returns as `do`."""
         return self.do({"do": "change", "at": 0.0, "change": change})
 
+    def gripper(self, command: str, force: float | None = None) -> int:
+        """Drive the gripper: "close", "open" or "stop", with a force of each finger [N]; returns as `do`."""
+        return self.do({"do": "gripper", "at": 0.0, "command": command} | ({} if force is None else {"force": force}))
+
     def free_drive(self, seconds: float) -> None:
         """Ask for free-drive as the remote controller, for so long; 0.0 ends it."""
         self._ask("free-drive", {"seconds": seconds})

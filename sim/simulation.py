@@ -1,5 +1,7 @@
 """One tick of all of it: sensors, estimator, supervisor, controller, plant, in this order and no other."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,7 +28,16 @@ from sim.exchange.desk import Wishes
 from sim.exchange.scoring import Glance
 from sim.exchange.snapshot import Snapshot
 from sim.exchange.told_force import told_force
-from sim.plant.changes import AnyChange, AttachPayload, DropPayload, FrictionChange, MoveObject, SensorFault, Temperature
+from sim.plant.changes import (
+    AnyChange,
+    AttachPayload,
+    DriveGripper,
+    DropPayload,
+    FrictionChange,
+    MoveObject,
+    SensorFault,
+    Temperature,
+)
 from sim.plant.model import Step
 from sim.plant.true_arm import Plant
 from sim.rigid_body.dynamics import Dynamics
@@ -177,9 +188,14 @@ class Simulation:
         self.watch.read(
             sample, estimate, answered.q if answered is not None and estimator.started else None, free=before is _FREE
         )
-        decision = supervisor.step(estimate, wishes.inputs)
+        gripper, inputs = plant.gripper, wishes.inputs
+        if gripper is not None and gripper.detected_input is not None:
+            inputs = replace(inputs, high=inputs.high | {gripper.detected_input})
+        decision = supervisor.step(estimate, inputs)
         friction, stiffer = estimator.friction, estimator.transmission.stiffer
         self.current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)
+        if gripper is not None:
+            gripper.wired(_outputs(decision) if wishes.outputs is None else wishes.outputs)
         plant.advance(self.current * self._motor, wishes.touches, decision.law is _OFF)
         self._estimate, self._decision = estimate, decision
         self._pulls.step(decision.pull)
@@ -242,7 +258,13 @@ class Simulation:
         elif isinstance(change, Temperature):
             plant.temperature[self._joints(change.joint)] = change.celsius
         elif isinstance(change, MoveObject):
+            if plant.gripper is not None and plant.gripper.state.held == change.name:
+                plant.gripper.drop()
             plant.world.place(change.name, change.position)
+        elif isinstance(change, DriveGripper):
+            if plant.gripper is None:
+                raise KeyError("a gripper: the tool that is mounted has none")
+            plant.gripper.order(change)
 
     def _joints(self, name: str | None) -> slice | int:
         if name is None:
@@ -285,11 +307,20 @@ class Simulation:
             self.supervisor.containment.every_place(self.settings.walls),
             self._pulls.shown,
             told_force(self.arm, self._estimate, self._decision),
+            None if plant.gripper is None else plant.gripper.state,
         )
 
     def _reference(self) -> Array | None:
         now = self.controller.references.now
         return None if now is None or self._decision is None or self._decision.law is Law.FREE else now.q.copy()
 
+
+def _outputs(decision: Decision) -> int:
+    """Digital outputs that the robot's program has on, as bits."""
+    return sum(1 << number for number in decision.outputs) | (decision.tool_on << TOOL_OUTPUT)
+
+
+TOOL_OUTPUT = 16
+"""Bit of the tool's first digital output."""
 
 _FREE, _OFF, _FOLLOW = Law.FREE, Law.OFF, Law.FOLLOW  # looked up in every tick

@@ -23,7 +23,8 @@ from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.robot_interface.dashboard.dashboard_session import DashboardSession
 from app.robot_interface.faults.control_channel import ControlChannel
 from app.robot_interface.faults.timed_http import TimedHttp
-from app.robot_interface.ports import CONTROL, DASHBOARD, PORTS, PRIMARY, READ_ONLY, REALTIME, RTDE, SECONDARY
+from app.robot_interface.gripper.gripper_session import GripperSession
+from app.robot_interface.ports import CONTROL, DASHBOARD, GRIPPER, PORTS, PRIMARY, READ_ONLY, REALTIME, RTDE, SECONDARY
 from app.robot_interface.rtde.rtde_inputs import RtdeInputs
 from app.robot_interface.rtde.rtde_session import RtdeSession
 from app.robot_interface.transport.outbox import Outbox
@@ -158,7 +159,10 @@ class RobotInterfaces:
         def realtime(writable: bool) -> Callable[[Peer, Outbox], StreamSession]:
             return lambda peer, outbox: RealtimeSession(talking, peer, outbox=outbox, writable=writable)
 
-        opened: dict[str, Callable[[Peer, Outbox], Conversation]] = {DASHBOARD: dashboard, RTDE: rtde}
+        def gripper(peer: Peer, outbox: Outbox) -> Conversation:
+            return GripperSession(self.scripts.gripper, outbox)
+
+        opened: dict[str, Callable[[Peer, Outbox], Conversation]] = {DASHBOARD: dashboard, RTDE: rtde, GRIPPER: gripper}
         for name, writable in (("", True), (READ_ONLY, False)):
             opened[PRIMARY + name] = stream(True, writable)
             opened[SECONDARY + name] = stream(False, writable)

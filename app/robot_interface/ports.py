@@ -1,6 +1,7 @@
 """The ports of a robot's interfaces, by name."""
 
 DASHBOARD, PRIMARY, SECONDARY, REALTIME, RTDE, CONTROL = "dashboard", "primary", "secondary", "real-time", "RTDE", "control"
+GRIPPER = "gripper"
 
 READ_ONLY = ", read-only"
 
@@ -13,6 +14,7 @@ PORTS = {
     PRIMARY + READ_ONLY: 30011,
     SECONDARY + READ_ONLY: 30012,
     REALTIME + READ_ONLY: 30013,
+    GRIPPER: 63352,
     CONTROL: 30090,
 }
-"""A UR's ports, and that of the control channel, which a UR does not have."""
+"""A UR's ports, that of a Robotiq gripper's software on it, and that of the control channel, which a UR does not have."""

@@ -11,10 +11,11 @@ from pendant.equipment.load import Angles
 from pendant.inputs import Button
 from pendant.limits.axis_locks import PRESETS, freeing
 from pendant.program.jog_move import Jogged
-from pendant.settings.bounds import MOST_WALLS, Span, Text
+from pendant.settings.bounds import MOST_WALLS, Extent, Span, Speed, Text
+from pendant.settings.bounds import Force as Size
 from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Load, Vector
-from sim.plant.changes import AnyChange
+from sim.plant.changes import AnyChange, DriveGripper
 from sim.plant.touch import ZERO, Push, Triple
 
 Control = Literal[
@@ -219,6 +220,28 @@ class Laboratory(Action, tag="change", frozen=True, kw_only=True):
     change: AnyChange
 
 
+class UseGripper(Action, tag="gripper", frozen=True, kw_only=True):
+    """The gripper is driven, past everything that is wired to it: `command: close`, or `opening: 0.04`. A cup draws when it closes."""
+
+    command: Literal["close", "open", "stop"] | None = None
+    opening: Extent | None = None  # distance of the fingers to go to [m]
+    speed: Speed | None = None  # of one finger against the other; None: as before [m/s]
+    force: Size | None = None  # of one finger; None: as before [N]
+
+    def __post_init__(self) -> None:
+        """Check that it says what to do, and one thing at most where to go."""
+        super().__post_init__()
+        if self.command is None and self.opening is None and self.speed is None and self.force is None:
+            raise ValueError("do: gripper wants `command`, `opening`, `speed` or `force`")
+        if self.command is not None and self.opening is not None:
+            raise ValueError("do: gripper wants either `command` or `opening`")
+
+    @property
+    def change(self) -> DriveGripper:
+        """The same as what a laboratory does."""
+        return DriveGripper(command=self.command, opening=self.opening, speed=self.speed, force=self.force)
+
+
 class DashboardLine(Action, tag="dashboard", frozen=True, kw_only=True):
     """A client says a line to the dashboard of the robot, which is in remote control from the start (app/robot_interface)."""
 
@@ -270,6 +293,7 @@ AnyAction = (
     | Axes
     | SetWalls
     | Laboratory
+    | UseGripper
     | OfClient
 )
 

@@ -19,6 +19,7 @@ from app.session.actions import (
     SetPayload,
     SetWalls,
     Tap,
+    UseGripper,
     Wrench,
     triple,
 )
@@ -214,7 +215,7 @@ class Timeline:
                 now.load = action.load
             case SetWalls():
                 now.borders = tuple(action.walls)
-            case Laboratory():
+            case Laboratory() | UseGripper():
                 now.changes.append(action.change)
             case _:
                 raise AssertionError(f"{type(action).__name__} has no case here")

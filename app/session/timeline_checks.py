@@ -17,6 +17,7 @@ from app.session.actions import (
     SelectTool,
     SetPayload,
     SetWalls,
+    UseGripper,
 )
 from app.session.expectations import Displacement, Expectation, Value
 from app.session.session_file import Session
@@ -28,7 +29,7 @@ from pendant.walls.containment import PARTS, TETHER
 from pendant.walls.definitions import AnyBorder, problem
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import AnyObject, Scenario, table
-from sim.plant.changes import AttachPayload, FrictionChange, MoveObject, SensorFault, Temperature, TrueChange
+from sim.plant.changes import AttachPayload, DriveGripper, FrictionChange, MoveObject, SensorFault, Temperature, TrueChange
 
 LONGEST = 3600.0
 """Of a session [s]."""
@@ -99,7 +100,9 @@ def _check_action(action: Action, field: str, *, session: Session, prepared: Pre
         why = unfit(action.move, prepared.arm.n)
         if why is not None:
             raise BadInput(where, f"{field}.move", ABSENT, why)
-    elif isinstance(action, Laboratory):
+    elif isinstance(action, Laboratory | UseGripper):
+        if isinstance(action.change, DriveGripper) and (prepared.scenario.tool is None or prepared.scenario.tool.gripper is None):
+            raise BadInput(where, f"{field}.do", "gripper", "needs a tool with a gripper, such as `tool: two-finger`")
         _check_change(action.change, f"{field}.change", prepared, where)
 
 

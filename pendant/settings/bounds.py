@@ -27,6 +27,7 @@ Reach = Annotated[float, Meta(ge=0.05, le=10.0)]  # of an arm [m]
 Angle = Annotated[float, Meta(ge=-100.0, le=100.0)]  # sixteen turns; of an orientation, where a turn is as none [rad]
 
 Mass = Annotated[float, Meta(ge=0.0, le=1000.0)]  # of a load, which may be none [kg]
+PartMass = Annotated[float, Meta(ge=0.05, le=200.0)]  # of a part that lies about [kg]
 LinkMass = Annotated[float, Meta(ge=0.001, le=2000.0)]  # a gram to two tonnes [kg]
 Capacity = Annotated[float, Meta(ge=0.01, le=1000.0)]  # what an arm may carry [kg]
 Moment = Annotated[float, Meta(ge=-1e4, le=1e4)]  # of inertia [kg·m²]
@@ -36,6 +37,9 @@ JointSpeed = Annotated[float, Meta(ge=0.01, le=100.0)]  # [rad/s]
 JointAcceleration = Annotated[float, Meta(ge=0.1, le=1e4)]  # [rad/s²]
 JointTorque = Annotated[float, Meta(ge=0.1, le=1e5)]  # [N·m]
 Force = Annotated[float, Meta(ge=0.01, le=1e4)]  # [N]
+Speed = Annotated[float, Meta(ge=0.001, le=5.0)]  # of the fingers of a gripper [m/s]
+Pressure = Annotated[float, Meta(ge=1e3, le=101e3)]  # below that of the air [Pa]
+Line = Annotated[int, Meta(ge=0, le=17)]  # number of a digital input or output
 Stiffness = Annotated[float, Meta(ge=10.0, le=1e7)]  # of a contact: foam to hardened steel [N/m]
 Friction = Annotated[float, Meta(ge=0.0, le=10.0)]  # coefficient
 Gain = Annotated[float, Meta(ge=-10.0, le=10.0)]  # a factor with a sign

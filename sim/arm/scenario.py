@@ -7,13 +7,56 @@ from msgspec import Meta
 
 import pendant.equipment.tools
 from pendant.equipment.load import Angles, Load, Vector
-from pendant.settings.bounds import Extent, Force, Friction, Name, Share, Size, Span, Stiffness, Thickness
+from pendant.settings.bounds import (
+    Extent,
+    Force,
+    Friction,
+    Line,
+    Name,
+    PartMass,
+    Pressure,
+    Share,
+    Size,
+    Span,
+    Speed,
+    Stiffness,
+    Thickness,
+)
 from pendant.walls.definitions import AnyBorder
 
-__all__ = ["BARE", "AnyObject", "Load", "Scenario", "ToolModel", "Vector", "table"]
+__all__ = ["BARE", "AnyObject", "AnyPart", "Load", "Scenario", "ToolModel", "Vector", "table"]
 
 
 Sizes = Annotated[list[Size], Meta(min_length=3, max_length=3)]  # full lengths [m]
+
+
+class Wired(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
+    """A gripper as it is wired to the robot: 0 to 7 standard, 8 to 15 configurable, 16 and 17 the tool's."""
+
+    close_output: Line = 0  # digital output that closes it
+    open_output: Line = 1  # digital output that opens it
+    detected_input: Line = 7  # digital input that is high while it holds a part
+
+
+class Fingers(Wired, tag="fingers", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Two fingers that close along x of the tool, their pads on both sides of the tool centre point. Numbers of a Robotiq 2F-85
+    (its instruction manual, specifications).
+    """
+
+    stroke: Thickness = 0.085  # distance of the pads when it is open [m]
+    finger: Thickness = 0.06  # length of a finger, the last part of the tool's length [m]
+    pad: Thickness = 0.022  # side of a pad, which is square [m]
+    least_force: Force = 20.0  # of one finger [N]
+    most_force: Force = 235.0  # [N]
+    least_speed: Speed = 0.02  # of one finger against the other [m/s]
+    most_speed: Speed = 0.15  # [m/s]
+
+
+class Cup(Wired, tag="cup", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A vacuum cup that looks along z of the tool, its rim round the tool centre point."""
+
+    radius: Thickness = 0.02  # of the rim [m]
+    vacuum: Pressure = 60e3  # below the pressure of the air: that of a common ejector [Pa]
 
 
 class ToolModel(pendant.equipment.tools.Tool, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -21,6 +64,7 @@ class ToolModel(pendant.equipment.tools.Tool, frozen=True, forbid_unknown_fields
 
     length: Extent = 0.0  # of its shape; 0 for none [m]
     radius: Thickness = 0.03  # [m]
+    gripper: Fingers | Cup | None = None  # what it grips with
 
 
 BARE = ToolModel(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
@@ -78,7 +122,28 @@ class Moving(WorldObject, tag="moving", frozen=True, forbid_unknown_fields=True,
     period: Span = 4.0  # [s]
 
 
-AnyObject = BoxObject | Plane | Pad | SnapFit | TwoFrictions | Moving
+class FreeBox(WorldObject, tag="free-box", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box that lies where it is put until something moves it; `position` is its centre."""
+
+    size: Sizes
+    mass: PartMass  # [kg]
+
+
+class FreeCylinder(WorldObject, tag="free-cylinder", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A cylinder along its z axis that lies where it is put until something moves it; `position` is its centre."""
+
+    radius: Thickness  # [m]
+    height: Size  # [m]
+    mass: PartMass  # [kg]
+
+    @property
+    def size(self) -> list[float]:
+        """Full lengths of the box around it [m]."""
+        return [2.0 * self.radius, 2.0 * self.radius, self.height]
+
+
+AnyPart = FreeBox | FreeCylinder
+AnyObject = BoxObject | Plane | Pad | SnapFit | TwoFrictions | Moving | FreeBox | FreeCylinder
 
 
 class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -21,6 +21,7 @@ class Wishes(msgspec.Struct, frozen=True, gc=False):
     inputs: Inputs
     touches: tuple[Touch, ...]
     changes: tuple[AnyChange, ...]
+    outputs: int | None = None  # the robot's digital outputs as bits; None: those of its program alone
 
     def joined(self, other: "Wishes") -> "Wishes":
         """The wishes of two for the same tick; where only one can have its way, it is `other`."""
@@ -42,7 +43,8 @@ class Wishes(msgspec.Struct, frozen=True, gc=False):
             ours.borders if theirs.borders is None else theirs.borders,
             ours.load_time if theirs.load_time is None else theirs.load_time,
         )
-        return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
+        outputs = self.outputs if other.outputs is None else other.outputs
+        return Wishes(inputs, self.touches + other.touches, self.changes + other.changes, outputs)
 
 
 @dataclass(slots=True)

@@ -13,6 +13,7 @@ from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Scenario
+from sim.gripping.finger_drive import GripperState
 
 
 def _nothing() -> NDArray[np.float64]:
@@ -46,6 +47,7 @@ class Snapshot:
     places: tuple[tuple[AnyBorder, Place], ...] = ()  # walls and areas with where their shapes lie in B
     pull: PullCauses | None = None  # what pulls at the free arm: of the last 0.1 s the tick in which that is least a hand (FD-19)
     user: UncertainForce | None = None  # what is taken for the user's force (FD-19); None while the arm is not free
+    gripper: GripperState | None = None  # of the tool that is mounted; None: it has none, or it is not recorded
 
     @property
     def p_FT(self) -> NDArray[np.float64]:

@@ -1,1 +1,1 @@
-"""The truth: the arm in its world, in MuJoCo. Uses arm/, compiled/."""
+"""The truth: the arm in its world, in MuJoCo. Uses arm/, compiled/, gripping/."""

@@ -18,10 +18,10 @@ RADIUS = 0.05  # height of a payload's centre when it lies on the floor [m]
 
 
 class Payload:
-    """What hangs on the flange. Once dropped it is a picture.
+    """What hangs on the flange: a load, and a part that a gripper holds. Once dropped, the load is a picture.
 
     Attributes:
-        load: mass, centre and inertia now.
+        load: mass, centre and inertia of both now.
         falling: it has been dropped, and nothing was attached since.
 
     Args:
@@ -31,7 +31,8 @@ class Payload:
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, load: Load, world: list[AnyObject]) -> None:
-        self.load = load
+        self.load = self._own = load
+        self._gripped: Load | None = None
         self._model, self._data, self._world = model, data, world
         self._scratch = mujoco.MjData(model)
         self._body = model.body("payload").id
@@ -44,10 +45,23 @@ class Payload:
         return self._fallen is not None
 
     def attach(self, load: Load) -> None:
-        """Make `load` the true payload from now on; what was attached before is gone."""
-        self.load = load
-        self._fallen = None
-        body = load_body(load)
+        """Make `load` the true payload from now on; what was attached before is gone, and what a gripper holds stays."""
+        self._own, self._fallen = load, None
+        self._become()
+
+    def grip(self, part: Load | None) -> None:
+        """Add a part that a gripper holds, in F; None: it holds none any more."""
+        self._gripped = part
+        self._become()
+
+    def _become(self) -> None:
+        body = load_body(self._own)
+        self.load = self._own
+        if self._gripped is not None:
+            body += load_body(self._gripped)
+            I = body.inertia  # noqa: E741
+            six = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
+            self.load = Load(mass=body.mass, com=body.com.tolist(), inertia=[float(moment) for moment in six])
         values, axes = np.linalg.eigh(body.inertia)
         if np.linalg.det(axes) < 0:
             axes[:, 0] *= -1.0
@@ -65,9 +79,9 @@ class Payload:
         Args:
             velocity: tells the flange's velocity (3,) in W [m/s] at a point (3,) in W [m]: it leaves with that.
         """
-        if self.load.mass == 0.0:
+        if self._own.mass == 0.0:
             return
-        position, orientation = self._data.xipos[self._body].copy(), self._data.xquat[self._body].copy()
+        position, orientation = self._centre(), self._data.xquat[self._body].copy()
         self._speed = velocity(position)
         self.attach(Load(mass=0.0))
         self._fallen = np.concatenate([position, orientation])
@@ -81,9 +95,16 @@ class Payload:
             self._fallen[2] = max(self._fallen[2], RADIUS)
 
     def pose(self) -> Array | None:
-        """Pose (7,) in W of its centre, attached or fallen: position [m], quaternion wxyz; None without one."""
+        """Pose (7,) in W of the load's centre, attached or fallen: position [m], quaternion wxyz; None without one."""
         if self._fallen is not None:
             return self._fallen.copy()
-        if self.load.mass == 0.0:
+        if self._own.mass == 0.0:
             return None
-        return np.concatenate([self._data.xipos[self._body], self._data.xquat[self._body]])
+        return np.concatenate([self._centre(), self._data.xquat[self._body]])
+
+    def _centre(self) -> Array:
+        """Centre of the load itself (3,) in W [m]."""
+        data, body = self._data, self._body
+        if self._gripped is None:
+            return data.xipos[body].copy()
+        return data.xpos[body] + data.xmat[body].reshape(3, 3) @ self._own.com

@@ -4,7 +4,7 @@ from typing import Literal
 
 import msgspec
 
-from pendant.settings.bounds import Celsius, Factor, Signed
+from pendant.settings.bounds import Celsius, Extent, Factor, Force, Share, Signed, Speed
 from sim.arm.scenario import Load, Vector
 
 
@@ -54,4 +54,22 @@ class MoveObject(TrueChange, tag="move_object", frozen=True, forbid_unknown_fiel
     position: Vector
 
 
-AnyChange = AttachPayload | DropPayload | SensorFault | FrictionChange | Temperature | MoveObject
+class DriveGripper(TrueChange, tag="gripper", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The gripper is driven, past everything that is wired to it. A cup that closes draws, and lets go when it opens."""
+
+    command: Literal["close", "open", "stop"] | None = None
+    opening: Extent | None = None  # distance of the fingers to go to [m]
+    speed: Speed | None = None  # of one finger against the other, None: as before [m/s]
+    force: Force | None = None  # of one finger, None: as before [N]
+    speed_share: Share | None = None  # the same from the least, 0, to the most that the drive can, 1
+    force_share: Share | None = None
+
+    def __post_init__(self) -> None:
+        """Check that it says one thing at most where the fingers are to go."""
+        if self.command is not None and self.opening is not None:
+            raise ValueError("a gripper wants either `command` or `opening`")
+        if (self.speed is not None and self.speed_share is not None) or (self.force is not None and self.force_share is not None):
+            raise ValueError("speed and force are given once each, as such or as a share")
+
+
+AnyChange = AttachPayload | DropPayload | SensorFault | FrictionChange | Temperature | MoveObject | DriveGripper

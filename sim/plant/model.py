@@ -12,9 +12,10 @@ import numpy as np
 from sim.arm.arm_file import Arm, ForceTorque
 from sim.arm.chain import Body, chain, load_body, plate_body, tool_body
 from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
-from sim.arm.scenario import Load, Scenario
+from sim.arm.scenario import Fingers, Load, Scenario
+from sim.gripping.finger_shape import FINGERS, finger_poses, finger_size, palm_length
 from sim.plant.joint_friction import Friction
-from sim.plant.objects import WRIST, add_object, pair_geoms, pair_own
+from sim.plant.objects import WRIST, add_carried, add_nowhere, add_object, pair_geoms, pair_own, pair_parts, parts_of
 
 SUBSTEPS = 8
 """Physics steps a control tick: 0.25 ms. An explicit integrator needs less than 2 / w for the fastest series spring, w being its
@@ -141,7 +142,12 @@ def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
         _add_shapes(spec, arm, scenario)
     for item in scenario.world:
         add_object(spec, item)
+    if parts_of(scenario.world):
+        add_nowhere(spec)
+    for part in parts_of(scenario.world):
+        add_carried(payload, part)
     pair_geoms(spec, arm.chain.joints[0], scenario.world)
+    pair_parts(spec, scenario.world)
     if scenario.self_contact:
         pair_own(spec, ("foot", *arm.chain.joints[:-WRIST]))
     return spec
@@ -217,12 +223,19 @@ def _add_shapes(spec: mujoco.MjSpec, arm: Arm, scenario: Scenario) -> None:
         geom.size[0] = shape.radius
         geom.mass = 0
     tool = scenario.tool
-    if tool is not None and tool.length > 2 * tool.radius:
+    length = 0.0 if tool is None else palm_length(tool)
+    if tool is not None and length > 2 * tool.radius:
         geom = spec.body("flange").add_geom(name="shape/tool", type=mujoco.mjtGeom.mjGEOM_CAPSULE, contype=0, conaffinity=0)
-        geom.fromto = [0, 0, tool.radius, 0, 0, tool.length - tool.radius]
+        geom.fromto = [0, 0, tool.radius, 0, 0, length - tool.radius]
         geom.size[0] = tool.radius
     else:
         geom = spec.body("flange").add_geom(name="shape/tool", type=mujoco.mjtGeom.mjGEOM_SPHERE, contype=0, conaffinity=0)
         geom.pos = [0, 0, -0.0315]
         geom.size[0] = 0.0315
     geom.mass = 0
+    if tool is not None and isinstance(tool.gripper, Fingers):
+        for name, pose in zip(FINGERS, finger_poses(tool, tool.gripper, tool.gripper.stroke), strict=True):
+            geom = spec.body("flange").add_geom(name=name, type=mujoco.mjtGeom.mjGEOM_BOX, contype=0, conaffinity=0)
+            geom.pos, geom.quat = pose[:3], pose[3:]
+            geom.size = finger_size(tool.gripper) / 2.0
+            geom.mass = 0

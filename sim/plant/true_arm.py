@@ -11,17 +11,20 @@ from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 from sim.plant.applied_touches import Hands
 from sim.plant.attached_payload import Payload
+from sim.plant.held_part import HeldParts
 from sim.plant.joint_friction import Friction
 from sim.plant.joint_state import LEAST_RUBBING, drive, finish, gather, plant_record, poses, sliding
 from sim.plant.model import SENSORS, Step, model_of
 from sim.plant.objects import set_contact_stiffness
 from sim.plant.touch import Touch
+from sim.plant.true_gripper import TrueGripper
 from sim.plant.world import World
 
 Array = NDArray[np.float64]
 
 WARMTH_TICKS = 50  # temperatures change over minutes: one update in 0.1 s
 BRAKE_STIFFNESS = 50.0  # of a closed brake, times that of the joint's bristles: a disc against rolling seals
+TOOL_MOTION = slice(12, 18)  # where `flange` has acceleration and angular velocity of the tool
 LUGRE_STIFFNESS, LUGRE_DAMPING = 5, 6  # where an actuator's dynamics parameters have the bristles'
 
 
@@ -76,8 +79,26 @@ class Plant:
         self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
         self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
         self.hands = Hands(model, data, self._parts)
+        self._held_parts = HeldParts(model, data, scenario.world, self.payload, self.flange_body)
+        self.gripper = self._gripper()
+        self._arm_geoms = np.array([model.geom(i).name.startswith(("shape/", "carried/")) for i in range(model.ngeom)])
         self.tick = 0
         self._place(np.array(scenario.posture if scenario.posture is not None else arm.chain.home))
+
+    def _gripper(self) -> TrueGripper | None:
+        tool = self.scenario.tool
+        if tool is None or tool.gripper is None:
+            return None
+        flange = self.flange_body
+        return TrueGripper(
+            self.model,
+            self.data,
+            tool,
+            self._held_parts,
+            flange=flange,
+            velocity=lambda point: self.hands.velocity(flange, point),
+            span=self.step.tick,
+        )
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -164,6 +185,8 @@ class Plant:
         self.tick += 1
         if self.tick % WARMTH_TICKS == 0:
             self._warm()
+        if self.gripper is not None:
+            self.gripper.step(self.flange[TOOL_MOTION])
         if self.payload.falling:
             self.payload.fall(self.step.tick)
 
@@ -212,13 +235,17 @@ class Plant:
         self.tick += round(seconds / self.step.tick)
 
     def drop(self) -> None:
-        """Let the payload fall: it leaves with the flange's velocity."""
+        """Let the payload fall, and what the gripper holds: they leave with the flange's velocity."""
+        if self.gripper is not None:
+            self.gripper.drop()
         self.payload.drop(lambda point: self.hands.velocity(self.flange_body, point))
 
     @property
     def touched(self) -> bool:
         """A hand or an object touches the arm, or what it carries."""
-        return self.data.ncon > 0 or bool(self.hands.touched)
+        if self.hands.touched or not self.data.ncon:
+            return bool(self.hands.touched)
+        return not self._held_parts.parts or bool(self._arm_geoms[self.data.contact.geom].any())
 
     def sliding_friction(self) -> Array:
         """True friction (n,) of both sides at the present speeds, with their signs [N·m].
@@ -233,7 +260,10 @@ class Plant:
 
     def object_poses(self) -> Array:
         """Poses (m, 7) in W of the world objects."""
-        return poses(*self.frames, self.world.bodies)
+        found = poses(*self.frames, self.world.bodies)
+        if self._held_parts.held is not None:
+            self._held_parts.place(found, self.scenario.world.index(self._held_parts.held))
+        return found
 
     def _read(self) -> None:
         """Gather the state at the tick's end, and the true transmission torque."""

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.arm.scenario import AnyObject, Moving, SnapFit, TwoFrictions
+from sim.arm.scenario import AnyObject, FreeBox, FreeCylinder, Moving, SnapFit, TwoFrictions
 from sim.plant.objects import SNAP_SLIP
 
 Array = NDArray[np.float64]
@@ -63,8 +63,9 @@ class World:
         for contact in self._data.contact:
             if contact.dist < -INSIDE:
                 geoms = {self._model.geom(int(geom)).name for geom in contact.geom}
-                found = (repr(item.name) for item, name in zip(self._items, names, strict=True) if name in geoms)
-                return f"the arm begins {-1000.0 * contact.dist:.0f} mm inside {next(found, 'itself')}"
+                found = [repr(item.name) for item, name in zip(self._items, names, strict=True) if name in geoms] or ["itself"]
+                who = "the arm begins" if len(found) == 1 else f"{found.pop()} begins"
+                return f"{who} {-1000.0 * contact.dist:.0f} mm inside {found[0]}"
         return ""
 
     def place(self, name: str, position: Sequence[float]) -> None:
@@ -73,4 +74,12 @@ class World:
         Raises:
             KeyError: there is no such object.
         """
-        self._model.body_pos[self._model.body(f"object/{name}").id] = position
+        model = self._model
+        item = next((item for item in self._items if item.name == name), None)
+        if isinstance(item, FreeBox | FreeCylinder):
+            joint = model.joint(f"free/{name}").id
+            at, dof = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+            self._data.qpos[at : at + 3] = position
+            self._data.qvel[dof : dof + 6] = 0.0
+            return
+        model.body_pos[model.body(f"object/{name}").id] = position

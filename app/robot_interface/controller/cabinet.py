@@ -26,6 +26,8 @@ from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.exchange.desk import Wishes
 from sim.exchange.snapshot import Snapshot
+from sim.gripping.finger_drive import GripperState
+from sim.plant.changes import DriveGripper
 from sim.simulation import Simulation
 
 AT_MOST = ticks(1.5)
@@ -46,6 +48,7 @@ class Cabinet:
     Attributes:
         state: the controller as of the last tick, replaced whole; the loop's thread writes it.
         ticks: done so far, through resets too.
+        gripper: as it was after the last tick, None without one; the loop's thread writes it.
         free_drive_until: tick up to which the remote controller asks for free-drive: its signal, kept alive.
         free_drive_by_input: the same of digital inputs that ask for it; the loop's thread writes it.
         writes: how often each input of RTDE was written; by the network's thread.
@@ -65,12 +68,15 @@ class Cabinet:
         self.programs = programs
         self.state = ControllerState(remote=remote)
         self.record = FieldRecord()
+        self._switched = self.record.field("actual_digital_output_bits")
         self._measured, self._status = MeasuredFields(self.record), StatusFields(self.record)
         self._lock = threading.Lock()
         self._asks: list[Ask] = []
         self._asked: list[Ask] = []  # of the tick that runs
         self._listeners: tuple[Listener, ...] = ()
         self._acts: list[Act] = []  # to begin with the next tick
+        self._drives: list[DriveGripper] = []  # for the next tick
+        self.gripper: GripperState | None = None
         self._timeline = Timeline([], joints)
         self._static = False  # the arm stood still in the last tick
         self._seen: Decision | None = None  # of the last tick
@@ -107,6 +113,11 @@ class Cabinet:
         with self._lock:
             self._acts.append(act)
         return act.begun
+
+    def drive(self, change: DriveGripper) -> None:
+        """Have the gripper do something in the next tick; without one it is for nothing."""
+        with self._lock:
+            self._drives.append(change)
 
     def listen(self, listener: Listener) -> None:
         """Tell somebody of every tick."""
@@ -163,6 +174,7 @@ class Cabinet:
                 ask.waited += 1
             self._asked = [ask for ask in ready if ask.done.set_running_or_notify_cancel()]
             acts, self._acts = self._acts, []
+            drives, self._drives = self._drives, []
         for act in acts:
             if act.begun.set_running_or_notify_cancel():
                 self._timeline.add(act.actions, tick - 1)
@@ -185,13 +197,20 @@ class Cabinet:
                 load=ask.load or inputs.load,
                 remote_signal=inputs.remote_signal,
             )
-        wishes = Wishes(inputs, (), ()).joined(self._timeline.wishes(tick, snapshot))
+        outputs = None
+        if self._simulation().plant.gripper is not None:
+            outputs = int(self._switched.item())
+        else:
+            drives = []
+        wishes = Wishes(inputs, (), tuple(drives), outputs).joined(self._timeline.wishes(tick, snapshot))
         return wishes if scripted is None else scripted.joined(wishes)
 
     def see(self, tick: int, decision: Decision) -> None:
         """Take in what the robot decided, and tell everybody."""
         self.ticks += 1
         self._static = decision.static
+        gripper = self._simulation().plant.gripper
+        self.gripper = None if gripper is None else gripper.state
         listeners = self._listeners
         self._timeline.see(tick, decision)
         if self.script is not None:
@@ -215,7 +234,10 @@ class Cabinet:
         """Have the record say how the last tick was: it is kept up only while somebody listens, or a script reads it."""
         if self._seen is not None:
             self._measured.fill(self._simulation(), self._seen)
-            self._status.fill(self.state, self._seen, self._high() | self._timeline.high)
+            gripper = self._simulation().plant.gripper
+            detected = None if gripper is None else gripper.detected_input
+            high = self._high() | self._timeline.high
+            self._status.fill(self.state, self._seen, high if detected is None else high | {detected})
 
     def repeat(self) -> None:
         """Nothing has been simulated for a while: have everybody say that the robot is still there; on the loop's thread."""
@@ -232,6 +254,7 @@ class Cabinet:
         """A simulation starts: faults of the one before are over, and who had control has it again."""
         with self._lock:
             acts, self._acts = self._acts, []
+            self._drives = []
         for act in acts:
             act.begun.cancel()
         self._timeline = Timeline([], self.joints)

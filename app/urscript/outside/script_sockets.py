@@ -5,6 +5,8 @@ import re
 import socket
 import struct
 
+from app.robot_interface.gripper.gripper_registers import GripperLines, GripperRegisters
+from app.robot_interface.ports import GRIPPER, PORTS
 from app.urscript.language.trouble import Misuse
 from app.urscript.outside.hosts import AllowedHosts
 
@@ -13,6 +15,8 @@ MOST = 16
 FULL = 1 << 16
 """Bytes that are kept, each way: the other side has to wait then."""
 CHUNK = 4096
+LOCAL = "127.0.0.1"
+"""Where a program finds what runs in the robot itself."""
 
 
 class ScriptSocket:
@@ -123,15 +127,41 @@ class ScriptSocket:
         return found
 
 
+class GripperSocket(ScriptSocket):
+    """A connection to the robot's own gripper, whose port is in the robot itself: answers are there at once."""
+
+    def __init__(self, registers: GripperRegisters) -> None:
+        super().__init__(socket.socket())
+        self._lines = GripperLines(registers)
+
+    def connected(self, address: tuple[str, int]) -> bool:
+        """See `ScriptSocket.connected`."""
+        self.open = True
+        return True
+
+    def look(self) -> None:
+        """All has come already."""
+
+    def send(self, data: bytes) -> bool:
+        """Send; False: a line is too long, or too many answers were not read."""
+        answer = self._lines.hear(data)
+        if answer is None or not self.open or len(self.data) + len(answer) > FULL:
+            self.broken = True
+            return False
+        self.data += answer
+        return True
+
+
 class ScriptSockets:
     """All connections of a script.
 
     Args:
         hosts: that it may connect to.
+        gripper: what the port of the robot's own gripper answers.
     """
 
-    def __init__(self, hosts: AllowedHosts) -> None:
-        self._hosts = hosts
+    def __init__(self, hosts: AllowedHosts, gripper: GripperRegisters | None = None) -> None:
+        self._hosts, self._gripper = hosts, gripper
         self._sockets: dict[str, ScriptSocket] = {}
 
     def begin(self, host: str, port: int, name: str) -> tuple[ScriptSocket, tuple[str, int]] | None:
@@ -146,6 +176,9 @@ class ScriptSockets:
             return None
         if len(self._sockets) >= MOST:
             raise Misuse(f"more than {MOST} sockets")
+        if port == PORTS[GRIPPER] and address == LOCAL and self._gripper is not None and self._gripper.there:
+            self._sockets[name] = own = GripperSocket(self._gripper)
+            return own, (address, port)
         connection = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

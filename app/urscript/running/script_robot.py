@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.question import Question
+from app.robot_interface.gripper.gripper_registers import GripperRegisters
 from app.urscript.calculation.pose_algebra import to_rpy
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.limits import MOST_MESSAGES
@@ -39,6 +40,7 @@ class ScriptRobot:
         senders: addresses other than this machine's that this script may call.
         tell: takes what the script tells.
         memory: what the robot keeps from one program to the next.
+        gripper: what its own gripper's port answers; None: it has no such port.
     """
 
     def __init__(
@@ -49,11 +51,12 @@ class ScriptRobot:
         tell: Callable[[Told], None],
         *,
         memory: RobotMemory,
+        gripper: GripperRegisters | None = None,
     ) -> None:
         self._cabinet, self._tell, self.memory = cabinet, tell, memory
         self.arm, self.record, self.seed = arm, cabinet.record, cabinet.simulation.scenario.seed
         self.hosts = AllowedHosts(senders, self.say)
-        self.sockets = ScriptSockets(self.hosts)
+        self.sockets = ScriptSockets(self.hosts, gripper)
         self.watchdog: tuple[str, int, str] | None = None  # variable, ticks that it may be silent, action
         self.asks: list[Ask] = []  # for the tick that begins
         self.tool: Tool | None = None  # to be used from now on

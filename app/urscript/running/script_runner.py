@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.robot_words import RobotMode, RuntimeState
+from app.robot_interface.gripper.gripper_registers import GripperRegisters
 from app.urscript.functions.library_of_functions import builtins_of
 from app.urscript.functions.sensing_values import HISTORY
 from app.urscript.language import tree
@@ -47,10 +48,12 @@ class ScriptRunner:
         line: of the script that runs, 0: none does.
         text: of the script that ran last.
         trouble: of the one that ran last.
+        gripper: the registers of the robot's gripper, for scripts and for its port.
     """
 
     def __init__(self, cabinet: Cabinet) -> None:
         self.cabinet = cabinet
+        self.gripper = GripperRegisters(cabinet)
         self._lock = threading.Lock()  # of what is told, and to whom
         self._orders = Orders()
         self._beside = SecondaryPrograms(self._close)
@@ -153,7 +156,7 @@ class ScriptRunner:
         state = self.cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
-        robot = ScriptRobot(self.cabinet, self.arm, hosts, self.tell, memory=self.memory)
+        robot = ScriptRobot(self.cabinet, self.arm, hosts, self.tell, memory=self.memory, gripper=self.gripper)
         self._orders.let_go()
         with uncollected(len(text)):
             body = read_script(text)

@@ -1,0 +1,1 @@
+"""The text protocol of a two-finger gripper, as programs and clients know it. Uses robot_interface/controller/, robot_interface/transport/."""

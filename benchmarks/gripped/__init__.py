@@ -1,0 +1,1 @@
+"""Parts in a gripper: what the bench `gripper` sets up and does."""
