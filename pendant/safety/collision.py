@@ -15,9 +15,9 @@ it as much."""
 MOST = 9999.0
 """That is told of a force, be it larger or no number [N]."""
 
-HELD_BY = 0.5
-"""Share of the setting for a moving arm from which a force tells what holds an arm that has left its path. A payload of 2 kg that
-nobody told of stays below."""
+HELD_BY = 0.2
+"""Share of the setting for a moving arm from which a force tells what holds an arm that has left its path: 10 N as shipped, twice
+what the flange sensor is good to."""
 
 BEFORE = ticks(0.05)
 """Ticks in which the contact itself brakes the arm before its force tells: the speed at the contact is the largest in them."""
@@ -96,6 +96,8 @@ class Collisions:
 
     def _part(self, joint: int, *, sensed: bool) -> str:
         """Name of the link that this joint, the last that feels the force, moves."""
+        if joint == 0:  # alone: of a force across the plane in which the joints up to the wrist lie they feel nothing
+            return "elbow or forearm"
         if joint < self._elbow:
             return "elbow"
         if joint == self._elbow:
@@ -103,7 +105,7 @@ class Collisions:
         return "wrist" if sensed else "wrist or tool"
 
 
-OF_THE_ELBOW = ("elbow", "forearm")
+OF_THE_ELBOW = ("elbow", "forearm", "elbow or forearm")
 """Parts whose speed is told as that of the elbow."""
 
 

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 RED = (201, 42, 42)
 
-RADII: Mapping[str, float] = {"tool": 0.045, "wrist": 0.075, "wrist or tool": 0.075}
+RADII: Mapping[str, float] = {"tool": 0.045, "wrist": 0.075, "wrist or tool": 0.075, "elbow or forearm": 0.18}
 """Of the mark, so that it stands out of the part [m]."""
 
 LINK_RADIUS = 0.1
@@ -60,6 +60,8 @@ def where(arm: Arm, values: Values) -> Array:
     match values["part"]:
         case "elbow":
             return origins[elbow]
+        case "elbow or forearm":
+            return (3.0 * origins[elbow] + origins[elbow + 1]) / 4.0
         case "forearm":
             return (origins[elbow] + origins[elbow + 1]) / 2.0
         case _:

@@ -88,7 +88,7 @@ def test_a_contact_is_told_with_its_numbers() -> None:
     assert decision.contacts == (GAINED,)
     assert event.values == {
         "part": "tool", "source": "sensor", "rule": "difference", "force": 7.0, "fx": 2.0, "fy": 3.0, "fz": -6.0,
-        "acceleration": 9.0, "ax": -1.0, "ay": -4.0, "az": 8.0, "ratio": -1.4, "steps": 3,
+        "acceleration": 9.0, "ax": -1.0, "ay": -4.0, "az": 8.0, "ratio": -1.4, "steps": 3, "speed": 0.0,
         "x": 0.0, "y": 0.0, "z": 0.3, "action": "none",
         "posture": "0.2000 0.2000 0.2000 0.2000 0.2000 0.2000",
     }  # fmt: skip

@@ -66,7 +66,7 @@ def test_beyond_the_range_of_the_sensor_the_joints_feel_the_rest() -> None:
     [
         (touched(tool=80.0), "tool", "wrist_3", 250.0),
         (touched(tool=100.0, link=80.0, joint=4, clipped=True), "tool", "wrist_3", 250.0),
-        (touched(link=80.0, joint=0), "elbow", "base", 150.0),
+        (touched(link=80.0, joint=0), "elbow or forearm", "base", 150.0),
         (touched(link=80.0, joint=1), "elbow", "shoulder", 150.0),
         (touched(link=80.0, joint=2), "forearm", "elbow", 150.0),
         (touched(link=80.0, joint=3), "wrist", "wrist_1", 250.0),

@@ -20,6 +20,7 @@ SHOULDER, ELBOW, WRIST = 1, 2, 3
     [
         ("tool", (0.5, -0.1, 0.2)),
         ("elbow", ORIGINS[ELBOW]),
+        ("elbow or forearm", 0.75 * ORIGINS[ELBOW] + 0.25 * ORIGINS[WRIST]),
         ("forearm", (ORIGINS[ELBOW] + ORIGINS[WRIST]) / 2),
     ],
 )
