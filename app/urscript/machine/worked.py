@@ -62,6 +62,17 @@ def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Ca
     return several
 
 
+def absent_called(name: str, why: str, given: list[Read], place: Spot) -> Read:
+    """A function that this robot has not: the program ends here, when what it is given is known."""
+
+    def ended(f: Frame) -> Value:
+        for read in given:
+            read(f)
+        raise ScriptTrouble(place, f"{name}(): {why}")
+
+    return ended
+
+
 def structured(parts: list[tuple[str, Read]], place: Spot) -> Read:
     """A struct of these members."""
 

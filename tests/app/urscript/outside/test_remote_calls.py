@@ -234,7 +234,5 @@ def test_a_dot_in_the_name_of_a_remote_function_is_the_servers(bench: ScriptBenc
 
 def test_a_server_that_has_no_such_part_says_so(bench: ScriptBench, rpc: Rpc) -> None:
     _, trouble = called(bench, rpc.url, "camera.arm.mass(1)")
-    assert trouble == (
-        "line 3, column 14: arm.mass(): the server says: <class 'Exception'>:method \"arm.mass\" is not supported"
-    )
+    assert trouble == ("line 3, column 14: arm.mass(): the server says: <class 'Exception'>:method \"arm.mass\" is not supported")
     assert called(bench, rpc.url, "x = camera.tool")[1] == "line 3, column 7: .tool of a handle: expected a struct"
