@@ -2,10 +2,11 @@
 
     python -m tools.found_programs FOLDER [--seconds S] [--out FILE]
 
-gives every `*.script` of the folder to a UR5e that stands, each to a robot of its own: as one program, as a pendant runs a script
-file; `*.sent.script` cut into programs, as a text that a client sends; `*.lines.script` line by line, each when the one before is
-done. A program that asks for a pose out of the UR5e's reach is given to a UR10e as well. Nobody presses a button, no input is on,
-no server answers. The exit code is 1 if a program lets the simulation fail.
+gives every `*.script` of the folder to a UR5e that stands, each to a robot of its own: as one program, also a single
+function without parameters, which a pendant only defines; `*.sent.script` cut into programs, as a text that a client sends;
+`*.lines.script` line by line, each when the one before is done. A text of several programs counts as refused only where all
+are. A program that asks for a pose out of the UR5e's reach is given to a UR10e as well. Nobody presses a button, no input is
+on, no server answers. The exit code is 1 if a program lets the simulation fail.
 """
 
 import argparse

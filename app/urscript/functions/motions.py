@@ -24,6 +24,8 @@ from app.urscript.machine.signature import (
 from app.urscript.machine.values import PoseValue, StructValue, Value, kind
 from app.urscript.robot.robot_side import ArmSide, RobotSide
 from pendant.motion.script_requests import (
+    GAIN,
+    LOOKAHEAD,
     DirectTorque,
     GentleStop,
     ScriptedArc,
@@ -183,8 +185,20 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     def for_time(move: ScriptedMove, seconds: float) -> Doing:
         return for_ticks(robot.arm, move, max(round(min(seconds, MOST) * TICK_RATE), 1))
 
+    told: set[str] = set()  # parameters that were limited
+
+    def limited(name: str, value: float, allowed: tuple[float, float]) -> float:
+        """A number within its range; people are told once where it was not."""
+        found = min(max(value, allowed[0]), allowed[1])
+        if found != value and name not in told:
+            told.add(name)
+            least, most = allowed
+            robot.say(f"servoj(): {name}: {value:g} is out of range, allowed: {least:g} to {most:g}; {found:g} is taken")
+        return found
+
     def servoj(*given: Value) -> Doing:
         q, _, _, t, lookahead, gain = given
+        lookahead, gain = limited("lookahead_time", lookahead, LOOKAHEAD), limited("gain", gain, GAIN)
         return for_time(ServoJoints(q=q, time=t, lookahead=lookahead, gain=gain), t)
 
     def servoc(x: Value, a: float, v: float, r: float) -> Doing:
@@ -218,8 +232,8 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         Taken("a", ZERO_UP, 0.0),
         Taken("v", ZERO_UP, 0.0),
         Taken("t", ZERO_UP, 0.002),
-        Taken("lookahead_time", within(number, 0.03, 0.2), 0.1),
-        Taken("gain", within(number, 100.0, 2000.0), 300.0),
+        Taken("lookahead_time", number, 0.1),
+        Taken("gain", number, 300.0),
         physical=True,
     )
     a, t = Taken("a", ZERO_UP), Taken("t", ZERO_UP, 0.0)  # without acceleration a speed stays: clients' splines do so

@@ -1,11 +1,14 @@
-"""Functions of the language that this robot has not, each with the reason: a program that calls one is told before it begins."""
+"""Functions of the language that this robot has not, each with the reason: a program that calls one ends there."""
 
 from collections.abc import Iterator
 
-from app.urscript.machine.signature import Builtin, barred
+from app.urscript.machine.signature import Builtin, absent
 
 NO_SCREWDRIVER = "this robot has no screwdriver; force_mode() pushes along an axis"
-NO_EIP = "this robot has no EtherNet/IP; Modbus, XML-RPC, sockets and RTDE registers exchange data"
+NO_EIP = (
+    "this robot has no EtherNet/IP, which robots have from software 5.16 on; "
+    "Modbus, XML-RPC, sockets and RTDE registers exchange data"
+)
 NO_ROS = "this robot runs no ROS 2 of its own; UR's ROS 2 driver talks to it"
 NO_INTERPRETER = "this robot serves no interpreter (port 30020); send programs to the ports 30001 to 30003"
 NO_EUROMAP = "this robot has no Euromap67 interface"
@@ -33,4 +36,4 @@ NOT_THERE = {
 def of_what_is_not_there() -> Iterator[Builtin]:
     """All of them."""
     for name, why in NOT_THERE.items():
-        yield barred(name, why)
+        yield absent(name, why)

@@ -110,10 +110,12 @@ class _Build(Transformer[Token, Any]):
         return tree.Assign(target.place, target, tree.Literal(target.place, None), str(scope))
 
     def remote(self, items: list[Any]) -> tree.RemoteCall:
-        given = items[2] or []
+        of, name, given = items[0], str(items[1]), items[2] or []
         if any(isinstance(each, tuple) for each in given):
-            raise ScriptTrouble(_at(items[1]), f"{items[1]}(): a remote function has no arguments by name")
-        return tree.RemoteCall(_at(items[1]), items[0], str(items[1]), given)
+            raise ScriptTrouble(_at(items[1]), f"{name}(): a remote function has no arguments by name")
+        while isinstance(of, tree.Member):
+            of, name = of.of, f"{of.name}.{name}"
+        return tree.RemoteCall(_at(items[1]), of, name, given)
 
     def call_statement(self, items: list[Any]) -> tree.Node:
         value = items[0]

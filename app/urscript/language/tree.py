@@ -85,8 +85,8 @@ class Call(Node):
 class RemoteCall(Node):
     """Of a function of the server behind a handle: `handle.function(arguments)`."""
 
-    of: Node
-    name: str
+    of: Node  # a handle, or a struct that has one
+    name: str  # all that stands behind it: `function`, `part.function`, or of a struct `member.function`
     arguments: list[Node]
 
 

@@ -106,7 +106,7 @@ def base(target: tree.Node) -> str:
 
 
 def outline(body: list[tree.Node], builtins: dict[str, Builtin]) -> ScriptOutline:
-    """Look a script through: a single function is a program by its name, anything else is one without a name.
+    """Look a script through: a single function without parameters is a program by its name, anything else is one without a name.
 
     Raises:
         ScriptTrouble: a function is defined in a way that cannot be.
@@ -116,9 +116,10 @@ def outline(body: list[tree.Node], builtins: dict[str, Builtin]) -> ScriptOutlin
         whole = body[0]
         if whole.kind == "thread":
             raise ScriptTrouble(whole.place, "a thread alone is no program")
-        if any(parameter.default is None for parameter in whole.parameters):
-            raise ScriptTrouble(whole.place, f"{whole.name}: a program has no parameters")
-        name, secondary, body = whole.name, whole.kind == "sec", whole.body
+        if not whole.parameters:
+            name, secondary, body = whole.name, whole.kind == "sec", whole.body
+        elif whole.kind == "sec":
+            raise ScriptTrouble(whole.place, f"{whole.name}: a secondary program has no parameters")
     main = Routine(MAIN, [], body)
     routines: dict[str, Routine] = {}
     _collect(body, routines)

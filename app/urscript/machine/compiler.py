@@ -18,7 +18,7 @@ from app.urscript.machine.limits import HEAVY
 from app.urscript.machine.signature import Builtin, NeededArgument
 from app.urscript.machine.statements import Statements
 from app.urscript.machine.values import UNSET, Value
-from app.urscript.machine.worked import as_it_is, kept, named_check, structured, worked
+from app.urscript.machine.worked import absent_called, as_it_is, kept, named_check, structured, worked
 
 
 class Compiler:
@@ -230,6 +230,8 @@ class Compiler:
         routine = self.script.routines.get(node.name)
         if routine is None:
             found = self.builtin(node)
+            if found.absent:
+                return absent_called(node.name, found.absent, [self.plain(each) for each in children(node)], node.place)
             return worked(node.name, found.work, self.checked(node, found), node.place)
         if routine.kind == "thread":
             raise ScriptTrouble(node.place, f"{node.name} is a thread: start it with run")

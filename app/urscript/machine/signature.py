@@ -38,7 +38,8 @@ class Builtin(NamedTuple):
     work: Callable[..., Value]
     takes_time: bool = False
     physical: bool = False  # the time that it takes is the arm's: it moves, or waits on purpose
-    barred: str = ""  # why it cannot be called at all
+    barred: str = ""  # why a program of this kind may not name it
+    absent: str = ""  # why this robot has it not, which ends a program that calls it
 
 
 def builtin(
@@ -54,12 +55,17 @@ def builtin(
 
 
 def barred(name: str, why: str) -> Builtin:
-    """A function that the language has, and this robot or this kind of program has not."""
+    """A function that the language has, and this kind of program has not: who names it is refused."""
     return Builtin(name, (), _never, barred=why)
 
 
+def absent(name: str, why: str) -> Builtin:
+    """A function that the language has, and this robot has not: a program may name it, and ends where it calls it."""
+    return Builtin(name, (), _never, absent=why)
+
+
 def _never(*_: Value) -> Value:
-    raise AssertionError("the compiler refuses it")
+    raise AssertionError("the compiler takes care of it")
 
 
 def _counted(work: Callable[..., Value], cost: int) -> Callable[..., Value]:

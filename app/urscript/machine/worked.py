@@ -9,6 +9,7 @@ from app.urscript.machine.analysis import Routine
 from app.urscript.machine.expressions import Frame, Read
 from app.urscript.machine.held import CALL, WAIT, Held, Step
 from app.urscript.machine.limits import LONGEST_LIST
+from app.urscript.machine.operators import member
 from app.urscript.machine.values import RemoteHandle, StructValue, Value, kind, weight
 
 
@@ -59,6 +60,17 @@ def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Ca
             raise failed(misuse) from None
 
     return several
+
+
+def absent_called(name: str, why: str, given: list[Read], place: Spot) -> Read:
+    """A function that this robot has not: the program ends here, when what it is given is known."""
+
+    def ended(f: Frame) -> Value:
+        for read in given:
+            read(f)
+        raise ScriptTrouble(place, f"{name}(): {why}")
+
+    return ended
 
 
 def structured(parts: list[tuple[str, Read]], place: Spot) -> Read:
@@ -122,14 +134,17 @@ def waited(
 
 
 def remote_waited(held: Held, node: tree.RemoteCall, slot: int, of: Read, *, arguments: list[Read]) -> Step:
-    """A function of a server is called."""
-    name, place = node.name, node.place
+    """A function of a server is called: a name with dots is the server's, but for what leads to the handle in a struct."""
+    place = node.place
 
     def step(f: Frame) -> int:
-        handle = of(f)
-        if not isinstance(handle, RemoteHandle):
-            raise ScriptTrouble(place, f".{name}() of {kind(handle)}: expected a handle, as rpc_factory() gives it")
+        handle, name = of(f), node.name
         try:
+            while "." in name and isinstance(handle, StructValue):
+                first, _, rest = name.partition(".")
+                handle, name = member(handle, first), rest
+            if not isinstance(handle, RemoteHandle):
+                raise ScriptTrouble(place, f".{name}() of {kind(handle)}: expected a handle, as rpc_factory() gives it")
             held.waiting = (handle.call(name, [read(f) for read in arguments]), slot, place, name)
         except Misuse as misuse:
             raise ScriptTrouble(place, f"{name}(): {misuse}") from None

@@ -21,6 +21,7 @@ class Rpc:
         self.port = self._server.server_address[1]
         for function in (self.start, self.echo, self.pose, self.slow, self.fails, self.date):
             self._server.register_function(function)
+        self._server.register_function(self.mass, "tool.mass")
         self._thread = threading.Thread(target=self._server.serve_forever, kwargs={"poll_interval": 0.01}, daemon=True)
         self._thread.start()
 
@@ -38,6 +39,10 @@ class Rpc:
 
     def pose(self) -> dict[str, float]:
         return {"x": -0.5, "y": -0.1, "z": 0.4, "rx": 2.22, "ry": 2.22, "rz": 0}
+
+    def mass(self, number: int) -> float:
+        self.heard.append((number,))
+        return number / 4
 
     def slow(self) -> str:
         self.open.wait(20.0)

@@ -216,3 +216,23 @@ def test_a_server_that_cannot_be_is_refused(bench: ScriptBench, text: str, words
 )
 def test_a_wrong_call_is_told(bench: ScriptBench, rpc: Rpc, body: str, words: str) -> None:
     assert called(bench, rpc.url, body)[1] == words
+
+
+def test_a_dot_in_the_name_of_a_remote_function_is_the_servers(bench: ScriptBench, rpc: Rpc) -> None:
+    """Found: the text of a URCap calls `server.getTCP` and others of one part of its server."""
+    body = (
+        "textmsg(camera.tool.mass(camera.echo(2)))\n"
+        "cell = struct(left=struct(camera=camera), number=1)\n"
+        "textmsg(cell.left.camera.tool.mass(3))\ntextmsg(cell.left.camera.echo(4))\n"
+        "cell.right.echo(1)"
+    )
+    told, trouble = called(bench, rpc.url, body)
+    assert told == ["0.5", "0.75", "4"]
+    assert trouble == "line 7, column 14: right.echo(): the struct has no member right; it has left, number"
+    assert rpc.heard == [(2,), (2,), (3,), (4,)]
+
+
+def test_a_server_that_has_no_such_part_says_so(bench: ScriptBench, rpc: Rpc) -> None:
+    _, trouble = called(bench, rpc.url, "camera.arm.mass(1)")
+    assert trouble == ("line 3, column 14: arm.mass(): the server says: <class 'Exception'>:method \"arm.mass\" is not supported")
+    assert called(bench, rpc.url, "x = camera.tool")[1] == "line 3, column 7: .tool of a handle: expected a struct"
