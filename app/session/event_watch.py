@@ -202,7 +202,7 @@ class DelayWatch(Watch):
     def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
         touched = glance().truth_touched
-        if touched is not self.touched and touched == self.wanted.gained:
+        if touched is not self.touched and touched == self.wanted.gained and self.delay is None:
             self.onset = tick
         self.touched = touched
         if any(event.kind == self.wanted.kind for event in decision.events) and self.delay is None:

@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,6 +7,7 @@ import pytest
 from app.session.expectation_watch import Verdict, Watch
 from app.session.expectations import (
     AnyExpectation,
+    ContactDelay,
     Displacement,
     Happens,
     Heard,
@@ -313,3 +315,11 @@ def test_a_verdict_says_how_far_it_is_from_its_bound(
 ) -> None:
     verdict = follow(expectation, 60, decide or (lambda tick: decision()), far_at_the_end)
     assert verdict.margin == (None if margin is None else pytest.approx(margin, abs=1e-9))
+
+
+def test_a_delay_is_that_of_the_first_event_whatever_touches_later() -> None:
+    decide = lambda tick: happened(Kind.CONTACT_GAINED, tick) if tick in (12, 43) else decision()
+    picture = lambda tick: replace(snapshot(tick), truth_touched=10 <= tick < 20 or tick >= 40)
+    verdict = follow(ContactDelay(max=0.01), 60, decide, picture)
+    assert (verdict.passed, verdict.seen) == (True, "0.004 s after 0.020 s")
+    assert verdict.margin == pytest.approx(0.6)
