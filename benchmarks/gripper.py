@@ -99,7 +99,7 @@ def untold(pick: Pick) -> Untold:
 
 
 def cost(pick: Pick) -> tuple[float, float, float]:
-    """Processor time of a tick with a part in the gripper, with the same arm beside its table, with a part that lies there [µs]."""
+    """Processor time of a tick: a part in the gripper; the same arm beside its table; a part that lies on the table [µs]."""
     held, bare, lies = Picking(pick), Picking(pick, part=False), Picking(pick)
     held.close()
     held.go((held.grips + UP, SPEED))

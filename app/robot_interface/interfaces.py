@@ -160,7 +160,7 @@ class RobotInterfaces:
             return lambda peer, outbox: RealtimeSession(talking, peer, outbox=outbox, writable=writable)
 
         def gripper(peer: Peer, outbox: Outbox) -> Conversation:
-            return GripperSession(self.scripts.gripper, outbox)
+            return GripperSession(self.scripts.gripper, peers, peer, outbox)
 
         opened: dict[str, Callable[[Peer, Outbox], Conversation]] = {DASHBOARD: dashboard, RTDE: rtde, GRIPPER: gripper}
         for name, writable in (("", True), (READ_ONLY, False)):

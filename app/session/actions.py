@@ -221,7 +221,7 @@ class Laboratory(Action, tag="change", frozen=True, kw_only=True):
 
 
 class UseGripper(Action, tag="gripper", frozen=True, kw_only=True):
-    """The gripper is driven, past everything that is wired to it: `command: close`, or `opening: 0.04`. A cup draws when it closes."""
+    """The gripper is driven, past what is wired to it: `command: close`, or `opening: 0.04`. A cup draws when it closes."""
 
     command: Literal["close", "open", "stop"] | None = None
     opening: Extent | None = None  # distance of the fingers to go to [m]

@@ -101,8 +101,6 @@ def _check_action(action: Action, field: str, *, session: Session, prepared: Pre
         if why is not None:
             raise BadInput(where, f"{field}.move", ABSENT, why)
     elif isinstance(action, Laboratory | UseGripper):
-        if isinstance(action.change, DriveGripper) and (prepared.scenario.tool is None or prepared.scenario.tool.gripper is None):
-            raise BadInput(where, f"{field}.do", "gripper", "needs a tool with a gripper, such as `tool: two-finger`")
         _check_change(action.change, f"{field}.change", prepared, where)
 
 
@@ -117,6 +115,9 @@ def check_walls(walls: list[AnyBorder], world: list[AnyObject], where: str, fiel
 
 
 def _check_change(change: TrueChange, field: str, prepared: Prepared, where: str) -> None:
+    tool = prepared.scenario.tool
+    if isinstance(change, DriveGripper) and (tool is None or tool.gripper is None):
+        raise BadInput(where, field.removesuffix(".change") + ".do", "gripper", "needs a tool with a gripper: `tool: two-finger`")
     if isinstance(change, AttachPayload):
         check_load(change.load, prepared.arm, where, f"{field}.load")
     elif isinstance(change, SensorFault):

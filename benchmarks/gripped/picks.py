@@ -17,7 +17,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import chain
 from sim.arm.frames import quaternion_from_matrix, rotation, rotation_vector
-from sim.arm.scenario import AnyPart, BoxObject, FreeBox, FreeCylinder, Load, Scenario
+from sim.arm.scenario import AnyObject, AnyPart, BoxObject, FreeBox, FreeCylinder, Load, Scenario
 from sim.exchange.desk import Wishes
 from sim.plant.changes import DriveGripper
 from sim.simulation import Simulation
@@ -120,13 +120,26 @@ class Picking:
         centre = [x + pick.across, y + pick.along, half]
         table = BoxObject(name="table", position=[-0.5, 0.0, -0.025], size=[0.7, 1.2, 0.05])
         own: AnyPart = (
-            FreeBox(name="part", position=centre, size=[pick.size[1], pick.size[0], pick.size[2]], **self._kind())
+            FreeBox(
+                name="part",
+                position=centre,
+                size=[pick.size[1], pick.size[0], pick.size[2]],
+                mass=pick.mass,
+                friction=pick.friction,
+            )
             if pick.box
-            else FreeCylinder(name="part", position=centre, radius=pick.size[0] / 2.0, height=pick.size[2], **self._kind())
+            else FreeCylinder(
+                name="part",
+                position=centre,
+                radius=pick.size[0] / 2.0,
+                height=pick.size[2],
+                mass=pick.mass,
+                friction=pick.friction,
+            )
         )
         arm = arms.load(pick.arm)
-        posture = reach(arm, self.grips + [0.0, 0.0, HIGH])
-        world = [table, own] if part else [table]
+        posture = reach(arm, self.grips + np.array([0.0, 0.0, HIGH]))
+        world: list[AnyObject] = [table, own] if part else [table]
         self.device = Simulation(
             arm, Scenario(posture=posture.tolist(), tool=TOOL, world=world, seed=pick.seed + pick.number), Settings()
         )
@@ -134,9 +147,6 @@ class Picking:
         self.row = 1
         self.run(0.4)
         self.zero = self.device.estimate.p_BF + self.device.estimate.R_BF @ np.array(TOOL.tcp) - self.grips - [0.0, 0.0, HIGH]
-
-    def _kind(self) -> dict[str, float]:
-        return {"mass": self.pick.mass, "friction": self.pick.friction}
 
     def run(self, seconds: float, wishes: Wishes = IDLE) -> None:
         """Let time pass; the wishes are of its first tick."""

@@ -14,7 +14,7 @@ TURNING = 2.0 / 3.0
 """Arm of friction about the middle of a disc of even pressure, as a share of its radius."""
 
 
-class Grip(NamedTuple):
+class GripContact(NamedTuple):
     """A grip, in F. Two fingers: `axis` is where they close along; a cup: away from the part."""
 
     point: tuple[float, float, float]  # middle of the grip [m]
@@ -39,7 +39,7 @@ def pad_radius(side: float) -> float:
 
 
 @kernel
-def load_on_grip(motion, before, span, body, touched):
+def load_on_grip(motion, faster, body, touched):
     """What the grip does to the part, at the part's centre.
 
     f = m (a + alpha × c + w × (w × c)) - f_t;  t = I alpha + w × I w - t_t, with the acceleration a against gravity of the
@@ -47,8 +47,7 @@ def load_on_grip(motion, before, span, body, touched):
 
     Args:
         motion: means over the tick at the origin of F, in F: acceleration against gravity [m/s²], angular velocity [rad/s] (6,).
-        before: angular velocity in the tick before (3,).
-        span: of a tick [s].
+        faster: angular acceleration, in F (3,) [rad/s²].
         body: a `HeldBody`.
         touched: force [N] and torque about the part's centre [N·m] of what touches the part elsewhere, in F (6,).
 
@@ -57,7 +56,7 @@ def load_on_grip(motion, before, span, body, touched):
     """
     m, (cx, cy, cz), (xx, yy, zz, xy, xz, yz) = body
     ax, ay, az, wx, wy, wz = motion
-    px, py, pz = (wx - before[0]) / span, (wy - before[1]) / span, (wz - before[2]) / span
+    px, py, pz = faster
     # w × c, then alpha × c + w × (w × c)
     ux, uy, uz = wy * cz - wz * cy, wz * cx - wx * cz, wx * cy - wy * cx
     fx = m * (ax + py * cz - pz * cy + wy * uz - wz * uy)
@@ -89,7 +88,7 @@ def strength_taken(grip, load, centre):
     n along the grip's axis, t across it; f_n of the cup draws the part away from it.
 
     Args:
-        grip: a `Grip`.
+        grip: a `GripContact`.
         load: force [N] and torque about the part's centre [N·m] of the grip on the part, in F (6,).
         centre: of the part, in F (3,) [m].
     """

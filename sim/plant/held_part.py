@@ -1,6 +1,6 @@
 """A part that a gripper holds: while it does, the part is one with the payload, and its own body goes along without weight.
 
-Its shape on the payload (`carried/<name>`, sim.plant.objects) is what then touches the world; that of its own body touches nothing.
+Its shape on the payload (`carried/<name>`, sim.plant.objects) is what then touches the world; its own body touches nothing.
 """
 
 import math
@@ -34,12 +34,12 @@ class HeldParts:
     """
 
     def __init__(
-        self, model: mujoco.MjModel, data: mujoco.MjData, world: Sequence[AnyObject], payload: Payload, flange: int
+        self, model: mujoco.MjModel, data: mujoco.MjData, world: Sequence[AnyObject], payload: Payload, *, flange: int
     ) -> None:
         self._model, self._data, self._payload, self._flange = model, data, payload, flange
         self.parts = parts_of(world)
         self.held: AnyPart | None = None
-        self.body = HeldBody(0.0, (0.0, 0.0, 0.0), (0.0,) * 6)
+        self.body = HeldBody(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
         self._pose = np.zeros(7)  # of the held part in F
         self._at, self._dof, self._geom = 0, 0, -1
         self._world = world
@@ -120,7 +120,7 @@ class HeldParts:
     def follow(self) -> None:
         """Put the held part's own body where the flange has it, at rest: once a tick."""
         data = self._data
-        _follow(data.xpos, data.xquat, self._flange, self._pose, data.qpos, data.qvel, self._at, self._dof)
+        _follow((data.xpos, data.xquat, self._flange), self._pose, (data.qpos, data.qvel), (self._at, self._dof))
 
     def held_pose(self) -> tuple[Array, Array]:
         """Where the held part is: position (3,) [m] and rotation (3, 3) in W."""
@@ -158,7 +158,7 @@ class HeldParts:
         for k, pair in enumerate(geoms.tolist()):
             if self._geom in pair:
                 mujoco.mj_contactForce(self._model, data, k, forces[k])
-        _sum(forces, geoms, contacts.frame, contacts.pos, self._geom, self._frames, self._flange, found)
+        _sum((forces, geoms, contacts.frame, contacts.pos), self._frames, (self._geom, self._flange), found)
         return found
 
     def _weigh(self, body: HeldBody) -> None:
@@ -174,8 +174,11 @@ class HeldParts:
 
 
 @kernel
-def _follow(positions, orientations, flange, pose, qpos, qvel, at, dof) -> None:
+def _follow(frames, pose, state, place) -> None:
     """Write position and orientation of a body that is fixed to the flange."""
+    positions, orientations, flange = frames
+    qpos, qvel = state
+    at, dof = place
     p, q = positions[flange], orientations[flange]
     w, x, y, z = q[0], q[1], q[2], q[3]
     a, b, c = pose[0], pose[1], pose[2]
@@ -193,8 +196,10 @@ def _follow(positions, orientations, flange, pose, qpos, qvel, at, dof) -> None:
 
 
 @kernel
-def _sum(forces, geoms, frames, points, own, places, flange, out) -> None:
-    """Add up the contact forces (m, 6) on a geom in F, with their torque about its middle; they act on a contact's second geom."""
+def _sum(contacts, places, bodies, out) -> None:
+    """Add up the contact forces (m, 6) on a geom in F, with the torque about its middle. They act on the second of two geoms."""
+    forces, geoms, frames, points = contacts
+    own, flange = bodies
     R, centre = places[0][flange], places[1][own]
     for k in range(geoms.shape[0]):
         if geoms[k, 0] != own and geoms[k, 1] != own:

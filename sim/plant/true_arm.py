@@ -79,7 +79,7 @@ class Plant:
         self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
         self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
         self.hands = Hands(model, data, self._parts)
-        self._held_parts = HeldParts(model, data, scenario.world, self.payload, self.flange_body)
+        self._held_parts = HeldParts(model, data, scenario.world, self.payload, flange=self.flange_body)
         self.gripper = self._gripper()
         self._arm_geoms = np.array([model.geom(i).name.startswith(("shape/", "carried/")) for i in range(model.ngeom)])
         self.tick = 0

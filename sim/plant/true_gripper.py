@@ -11,7 +11,7 @@ from sim.arm.scenario import AnyPart, Cup, Fingers, ToolModel
 from sim.gripping.finger_drive import FingerDrive, GripperState, vacuum_force
 from sim.gripping.finger_shape import FINGERS, THICKNESS, finger_poses
 from sim.gripping.grasp import Chord, chord, firm, seals
-from sim.gripping.grip_strength import Grip, load_on_grip, pad_radius, strength_taken
+from sim.gripping.grip_strength import GripContact, load_on_grip, pad_radius, strength_taken
 from sim.plant.changes import DriveGripper
 from sim.plant.held_part import HeldParts
 
@@ -109,7 +109,7 @@ class TrueGripper:
         """Go on for a tick that the physics has done.
 
         Args:
-            motion: means over the tick at the origin of F, in F: acceleration against gravity [m/s²], angular velocity [rad/s] (6,).
+            motion: means over the tick at the origin of F, in F (6,): acceleration [m/s²] against gravity, turning [rad/s].
         """
         parts, drive = self._parts, self._drive
         if parts.held is not None:
@@ -139,13 +139,15 @@ class TrueGripper:
                 self._open(drive)
             return
         touched = self._parts.touched()
-        load = load_on_grip(motion, self._spin, self._span, body, touched)
+        now = motion[3:].tolist()
+        x, y, z = ((after - before) / self._span for after, before in zip(now, self._spin, strict=True))
+        load = load_on_grip(motion, (x, y, z), body, touched)
         self._taken = strength_taken(self._grip(part), load, body.com)
         if self._taken > 1.0 and not self._slide(part, touched):
             self._lose()
 
     def _slide(self, part: AnyPart, touched: Array) -> bool:
-        """A part that something else holds slides in the grip, as far as friction gives way to it; False: it is out of the grip."""
+        """A part that something else holds slides in the grip, as far as friction gives way; False: it is out of the grip."""
         force = float(np.linalg.norm(touched[:3]))
         if force == 0.0:
             return False
@@ -164,15 +166,15 @@ class TrueGripper:
         self._parts.give(self._velocity)
         self._taken, self._slipped = 0.0, part.name
 
-    def _grip(self, part: AnyPart) -> Grip:
+    def _grip(self, part: AnyPart) -> GripContact:
         """How it holds a part."""
         x, y, z = self._point.tolist()
         if self._drive is not None:
             a, b, c = self._R[:, 0].tolist()
-            return Grip((x, y, z), (a, b, c), True, self._drive.force, part.friction, pad_radius(self._drive.fingers.pad))
+            return GripContact((x, y, z), (a, b, c), True, self._drive.force, part.friction, pad_radius(self._drive.fingers.pad))
         assert isinstance(self._kind, Cup)
         a, b, c = (-self._R[:, 2]).tolist()
-        return Grip((x, y, z), (a, b, c), False, vacuum_force(self._kind), part.friction, self._kind.radius)
+        return GripContact((x, y, z), (a, b, c), False, vacuum_force(self._kind), part.friction, self._kind.radius)
 
     def _frame(self) -> tuple[Array, Array]:
         """Tool centre point (3,) [m] and axes of the tool (3, 3), in W."""

@@ -1,1 +1,4 @@
-"""The text protocol of a two-finger gripper, as programs and clients know it. Uses robot_interface/controller/, robot_interface/transport/."""
+"""The text protocol of a two-finger gripper, as programs and clients know it.
+
+Uses robot_interface/transport/.
+"""

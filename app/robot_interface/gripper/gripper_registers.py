@@ -1,8 +1,8 @@
 """What the port of a Robotiq gripper answers: registers that are set and read, a line at a time.
 
-`SET POS 255 SPE 128 FOR 50` sets registers, all or none, and is answered with `ack`; `GET POS` with `POS 255` and a line end. What is
-no such line is answered with `?`. The registers are those of the gripper (Robotiq 2F-85 instruction manual, "Control overview");
-a `GET` needs no line end, since the maker's own programs send none.
+`SET POS 255 SPE 128 FOR 50` sets registers, all or none, and is answered with `ack`; `GET POS` with `POS 255` and a line end.
+What is no such line is answered with `?`. The registers are those of the gripper (Robotiq 2F-85 instruction manual, "Control
+overview"); a `GET` needs no line end, since the maker's own programs send none.
 """
 
 import re
@@ -11,6 +11,9 @@ from typing import Protocol
 
 from sim.gripping.finger_drive import GripperState
 from sim.plant.changes import DriveGripper
+
+NUMBER = 63352
+"""Of the port."""
 
 FULL = 255
 """Largest value of a register: closed, fastest, strongest."""

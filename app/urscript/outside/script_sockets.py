@@ -5,8 +5,7 @@ import re
 import socket
 import struct
 
-from app.robot_interface.gripper.gripper_registers import GripperLines, GripperRegisters
-from app.robot_interface.ports import GRIPPER, PORTS
+from app.robot_interface.gripper.gripper_registers import NUMBER, GripperLines, GripperRegisters
 from app.urscript.language.trouble import Misuse
 from app.urscript.outside.hosts import AllowedHosts
 
@@ -176,7 +175,7 @@ class ScriptSockets:
             return None
         if len(self._sockets) >= MOST:
             raise Misuse(f"more than {MOST} sockets")
-        if port == PORTS[GRIPPER] and address == LOCAL and self._gripper is not None and self._gripper.there:
+        if port == NUMBER and address == LOCAL and self._gripper is not None and self._gripper.there:
             self._sockets[name] = own = GripperSocket(self._gripper)
             return own, (address, port)
         connection = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)

@@ -17,10 +17,20 @@ from pendant.tick.modes import TICK_RATE, Mode, Phase
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Load
 from sim.exchange.snapshot import Snapshot
-from sim.plant.changes import AttachPayload, DropPayload, FrictionChange, SensorFault, Temperature
+from sim.plant.changes import AttachPayload, DriveGripper, DropPayload, FrictionChange, SensorFault, Temperature
 
 ROOM = 25.0
 """Temperature of the joints that the slider starts with [°C]."""
+
+
+def gripped(snapshot: Snapshot) -> list[tuple[str, str]]:
+    """What a gripper does, for people."""
+    state = snapshot.gripper
+    if state is None:
+        return [("Gripper", "none: choose a tool that has one")]
+    share = f", {100.0 * state.taken:.0f} % of what it can hold" if state.held else ""
+    found = [("Holds", (state.held or "nothing") + share)]
+    return [("Opening", f"{1000.0 * state.opening:.0f} mm, {state.force:.0f} N"), *found] if state.stroke else found
 
 
 class Lab:
@@ -43,6 +53,7 @@ class Lab:
         self.wires = Wires(gui, loop, interfaces)
         self.setup = LabSetup(gui, loop, arm)
         self._connect()
+        self._connect_gripper()
 
     def show(self, snapshot: Snapshot) -> bool:
         """Show a snapshot; True if anything changed."""
@@ -65,6 +76,7 @@ class Lab:
         changed = [
             self.wires.show(snapshot),
             self.rates.show(svg.facts(pairs)),
+            self.grip.show(svg.facts(gripped(snapshot))),
             self.loads.show(svg.loads(snapshot.truth_payload_mass, snapshot.configured_mass)),
             enable(self.configured, not locked),
             enable(self.drop, snapshot.truth_payload_mass > 0.0),
@@ -78,6 +90,9 @@ class Lab:
             self.true = gui.add_slider("True [kg]", min=0.0, max=most, step=0.1, initial_value=0.0)
             self.configured = gui.add_slider("Configured", min=0.0, max=most, step=0.1, initial_value=0.0, hint="kg")
             self.drop = gui.add_button("Drop it", color="gray", disabled=True)
+        with gui.add_folder("Gripper"):
+            self.gripper = gui.add_button_group("Fingers or cup", ("Close", "Open"))
+            self.grip = Html(gui)
 
     def _faults(self) -> None:
         gui = self._gui
@@ -148,6 +163,13 @@ class Lab:
         by_hand(self.wear, lambda: desk.change(FrictionChange(factor=float(self.wear.value))))
         for control in (self.drift, self.noise, self.outage):
             by_hand(control, self._fault)
+
+    def _connect_gripper(self) -> None:
+        @self.gripper.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            tool = self._loop.scenario.tool
+            if tool is not None and tool.gripper is not None:
+                self._loop.desk.change(DriveGripper(command="close" if self.gripper.value == "Close" else "open"))
 
     def _fault(self) -> None:
         """The force along z of the sensor drifts; all of its channels get noisier or fail."""

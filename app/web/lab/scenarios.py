@@ -46,7 +46,10 @@ TOPICS = {
         *("soft-limits", "dynamic-limits", "joint-limits", "vertical-speed", "wall-walked-down", "wall-made", "wall-pushes-back"),
         *("wall-ends-free-drive", "wall-stops-a-program", "axis-locks", "only-the-elbow"),
     ),
-    "Payload, tool, sensor": ("payload-wizard", "payload-by-itself", "half-a-kilogram", "zeroed", "hanging", "friction-warm-up"),
+    "Payload, tool, sensor": (
+        *("payload-wizard", "payload-by-itself", "half-a-kilogram", "zeroed", "hanging", "friction-warm-up"),
+        *("gripped-unknown", "part-slips"),
+    ),
     "Programs and contact": (
         *("hold", "program", "touch-the-table", "stops-at-contact", "waits-for-a-trigger", "tells-the-user", "touches-itself"),
         *("contact-buffers", "contact-median", "contact-older-pairs", "contact-operating", "contact-commanded"),

@@ -16,9 +16,10 @@ from app.web.scene.stage import DARK, LIGHT, lay
 from app.web.scene.touch_arrow import TouchArrow
 from app.web.scene.wall_pictures import WallPictures
 from sim.arm.arm_file import Arm
-from sim.arm.frames import matrix_from_quaternion
-from sim.arm.scenario import Pad, Plane, Scenario, SnapFit, TwoFrictions
+from sim.arm.frames import matrix_from_quaternion, quaternion_from_matrix
+from sim.arm.scenario import Fingers, FreeBox, FreeCylinder, Pad, Plane, Scenario, SnapFit, TwoFrictions
 from sim.exchange.snapshot import Snapshot
+from sim.gripping.finger_shape import finger_poses, finger_size, palm_length
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,14 @@ TOUCHES = 4
 """Touches shown at once."""
 
 GREY = (173, 181, 189)
-WORLD_COLOURS = {Pad: (150, 190, 160), SnapFit: (190, 170, 140), TwoFrictions: (170, 170, 200)}
+PART = (222, 150, 70)
+WORLD_COLOURS = {
+    Pad: (150, 190, 160),
+    SnapFit: (190, 170, 140),
+    TwoFrictions: (170, 170, 200),
+    FreeBox: PART,
+    FreeCylinder: PART,
+}
 
 
 def frames_of(arm: Arm) -> dict[str, int]:
@@ -63,6 +71,7 @@ class Scene:
             if part in meshes:
                 self.draggable[part] = server.scene.add_glb(f"/arm/{part}", meshes[part], cast_shadow=False, receive_shadow=False)
                 self._nodes[f"link {row} {part}"] = self.draggable[part]
+        self._fingers: list[viser.SceneNodeHandle] = []
         self._add_tool(scenario)
         self._add_world(scenario)
         self._payload = server.scene.add_icosphere("/payload", radius=1.0, color=(230, 150, 60), visible=False, cast_shadow=False)
@@ -84,6 +93,7 @@ class Scene:
                 kind, row, _ = key.split(" ", 2)
                 poses = snapshot.truth_links if kind == "link" else snapshot.truth_objects
                 changed |= self._place(key, node, poses[int(row)])
+            changed |= self._show_fingers(snapshot)
             changed |= self._show_payload(snapshot)
             changed |= self._show_believed(snapshot)
             changed |= self._show_touches(snapshot)
@@ -99,6 +109,8 @@ class Scene:
         for key in [key for key in self._nodes if key.startswith("object ") or key.endswith(" tool")]:
             self._nodes.pop(key).remove()
         self._last.clear()
+        while self._fingers:
+            self._fingers.pop().remove()
         self.draggable.pop("tool", None)
         self._add_tool(scenario)
         self._add_world(scenario)
@@ -160,17 +172,39 @@ class Scene:
         tool = scenario.tool
         if tool is None or tool.length <= 0.0:
             return
-        if tool.length > 2.0 * tool.radius:  # as it is in the simulation
-            shape = trimesh.creation.capsule(tool.length - 2.0 * tool.radius, tool.radius, count=[24, 16])
+        length = palm_length(tool)
+        if length > 2.0 * tool.radius:  # as it is in the simulation
+            shape = trimesh.creation.capsule(length - 2.0 * tool.radius, tool.radius, count=[24, 16])
         else:
-            shape = trimesh.creation.cylinder(tool.radius, tool.length, sections=32)
-        shape.apply_translation([0.0, 0.0, tool.length / 2])
+            shape = trimesh.creation.cylinder(tool.radius, length, sections=32)
+        shape.apply_translation([0.0, 0.0, length / 2])
         shape.visual = TextureVisuals(
             material=PBRMaterial(baseColorFactor=[38, 42, 48, 255], metallicFactor=0.0, roughnessFactor=0.5)
         )
         handle = self._server.scene.add_mesh_trimesh(TOOL, shape, cast_shadow=False, receive_shadow=False)
         self.draggable["tool"] = handle
         self._nodes[f"link {self._frames['tool']} tool"] = handle
+        if isinstance(tool.gripper, Fingers):
+            size = finger_size(tool.gripper)
+            self._fingers = [
+                self._server.scene.add_box(
+                    f"/arm/finger {k}", dimensions=size, color=(70, 76, 84), cast_shadow=False, receive_shadow=False
+                )
+                for k in range(2)
+            ]
+
+    def _show_fingers(self, snapshot: Snapshot) -> bool:
+        """The fingers where the gripper has them; open, where that is not known."""
+        tool = self._scenario.tool
+        if not self._fingers or tool is None or not isinstance(tool.gripper, Fingers):
+            return False
+        state, face = snapshot.gripper, snapshot.truth_links[-1]
+        opening = tool.gripper.stroke if state is None else state.opening
+        R, changed = matrix_from_quaternion(face[3:]), False
+        for k, own in enumerate(finger_poses(tool, tool.gripper, opening)):
+            turn = quaternion_from_matrix(R @ matrix_from_quaternion(own[3:]))
+            changed |= self._place(f"finger {k}", self._fingers[k], np.concatenate([face[:3] + R @ own[:3], turn]))
+        return changed
 
     def _add_world(self, scenario: Scenario) -> None:
         level = min([0.0, *(thing.position[2] for thing in scenario.world if isinstance(thing, Plane) and not any(thing.rpy))])
@@ -180,6 +214,12 @@ class Scene:
                 continue  # it is the floor
             size = np.array([3.0, 3.0, 0.002] if isinstance(thing, Plane) else thing.size)
             colour = WORLD_COLOURS.get(type(thing), GREY)
+            if isinstance(thing, FreeCylinder):
+                shape = trimesh.creation.cylinder(thing.radius, thing.height, sections=32)
+                self._nodes[f"object {row} {thing.name}"] = self._server.scene.add_mesh_simple(
+                    f"/world/{row}", shape.vertices, shape.faces, color=colour, cast_shadow=False, receive_shadow=False
+                )
+                continue
             self._nodes[f"object {row} {thing.name}"] = self._server.scene.add_box(
                 f"/world/{row}",
                 dimensions=size,

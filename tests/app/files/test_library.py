@@ -10,7 +10,7 @@ from app.files.library import ASSETS, load_arm, load_tool, mesh_path, robots, to
 
 def test_shipped_names() -> None:
     assert robots() == ["ur10e", "ur16e", "ur3e", "ur5e"]
-    assert tools() == ["flange", "gripper", "sphere"]
+    assert tools() == ["flange", "gripper", "sphere", "two-finger", "vacuum-cup"]
 
 
 @pytest.mark.parametrize("name", ["ur3e", "ur5e", "ur10e", "ur16e"])
@@ -18,7 +18,7 @@ def test_an_arm_bears_the_name_of_its_file(name: str) -> None:
     assert load_arm(name).name == name
 
 
-@pytest.mark.parametrize("name", ["flange", "gripper", "sphere"])
+@pytest.mark.parametrize("name", ["flange", "gripper", "sphere", "two-finger", "vacuum-cup"])
 def test_a_tool_bears_the_name_of_its_file(name: str) -> None:
     assert load_tool(name).name == name
 
