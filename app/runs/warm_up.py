@@ -45,4 +45,5 @@ def _stream(simulation: Simulation) -> None:
     most = np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position)
     now, up = Reference(q, np.zeros_like(q), np.zeros_like(q)), (0.0, 0.0, 0.01)
     move = SpeedTool(id=0, speed=up, turning=(0.0, 0.0, 0.0), acceleration=0.1, turning_acceleration=0.1)
-    ToolStream(now, move, ToolPoint(dynamics, tcp), R_FT=simulation.R_FT, limits=most, pace=Pace(dynamics, tcp)).step(1.0, None)
+    tool, pace = ToolPoint(dynamics, tcp), Pace(simulation.controller.references.meter)
+    ToolStream(now, move, tool, R_FT=simulation.R_FT, limits=most, pace=pace).step(1.0, None)

@@ -37,6 +37,8 @@ def test_a_files_tools_come_first_and_win_over_those_shipped() -> None:
         ("sphere", 0.7),
         ("nail", 0.1),
         ("gripper", 0.925),
+        ("two-finger", 0.925),
+        ("vacuum-cup", 0.35),
     ]
 
 
@@ -63,7 +65,7 @@ def test_a_whole_header_reaches_the_scenario() -> None:
     assert scenario.tool is not None
     assert scenario.tool.name == "gripper"
     assert [thing.name for thing in scenario.world] == ["floor", "table"]
-    assert [tool.name for tool in table(scenario)] == ["gripper", "flange", "sphere"]
+    assert [tool.name for tool in table(scenario)] == ["gripper", "flange", "sphere", "two-finger", "vacuum-cup"]
     assert prepared.settings.free_drive.period == 5.0
     assert prepared.program is not None
 
@@ -116,7 +118,7 @@ def test_a_whole_header_reaches_the_scenario() -> None:
         ),
         (
             {"timeline": [{"at": 0, "do": "select_tool", "tool": "hammer"}]},
-            "s.yaml: timeline[0].tool = hammer: one of flange, gripper, sphere",
+            "s.yaml: timeline[0].tool = hammer: one of flange, gripper, sphere, two-finger, vacuum-cup",
         ),
         (
             {"timeline": [{"at": 0, "do": "payload", "load": {"mass": 51}}]},
@@ -240,5 +242,12 @@ def test_the_example_of_the_tools_page_is_a_session() -> None:
     example = page.split("```yaml\n")[1].split("```")[0]
     session = parse("title: example\nduration: 4.0\n" + example, Session, "tools.md")
     prepared = prepare(session, "tools.md")
-    assert [tool.name for tool in table(prepared.scenario)] == ["gripper", "long gripper", "flange", "sphere"]
+    assert [tool.name for tool in table(prepared.scenario)] == [
+        "gripper",
+        "long gripper",
+        "flange",
+        "sphere",
+        "two-finger",
+        "vacuum-cup",
+    ]
     assert len(session.timeline) == 2
