@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from pendant.guided.pull import NOT_TOLD, PullCauses
 from pendant.tick.estimate import Estimate
 from sim.compiled.kernel import kernel
+from sim.exchange.true_forces import true_forces
 from sim.plant.joint_state import SIGN_SPEED
 from sim.plant.true_arm import Plant
-from sim.plant.true_forces import true_forces
 
 Array = NDArray[np.float64]
 
