@@ -65,7 +65,7 @@ def test_no_docstring_comment_or_page_cites_a_file_that_is_not_there() -> None:
     names = {path.name for path in files(*TOPS, ends=(".py", ".md"))}
     gone: list[tuple[str, str]] = []
     for path in files(*TOPS, ends=(".py", ".yaml", ".md")):
-        found = missing(said(path), path.parent, names)
+        found = [name for name in missing(said(path), path.parent, names) if not name.startswith("out/")]  # `make docs` writes it
         if path.suffix == ".md":  # what a user may call their own file is no module and no page
             found = [name for name in found if name.endswith((".py", ".md"))]
         gone += [(path.relative_to(ROOT).as_posix(), name) for name in found]

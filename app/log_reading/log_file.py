@@ -6,6 +6,7 @@ from typing import TypeVar
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from app.files.bad_input import ABSENT, BadInput
@@ -27,6 +28,9 @@ T = TypeVar("T")
 
 TOPICS = {"/state": "cdr", "/truth": "cdr", "/pendant": "json", "/tf": "json", "/events": "json", "/settings": "json"}
 """What a recording has, and how its messages are packed."""
+
+RENAMED = {"reduced_exceeded": Kind.LIMIT_EXCEEDED.value}
+"""Kinds of events in recordings of earlier versions, by what they are called now."""
 
 
 @dataclass(slots=True)
@@ -121,7 +125,7 @@ def _opened(path: Path, table: ChunkTable) -> LogFile:
     must_rise(frames.times, "/tf")
     both, *numbers = np.intersect1d(pictures.times.all(), frames.times.all(), assume_unique=True, return_indices=True)
     rates = table.notes.get("rates", {})
-    events = _all(table, "/events", EventLine)
+    events = [replace(event, kind=RENAMED.get(event.kind, event.kind)) for event in _all(table, "/events", EventLine)]
     for event in events:
         Kind(event.kind)
     return LogFile(

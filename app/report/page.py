@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from html import escape
+from math import isfinite
 
 from app.log.events_file import EventLine
 from app.report.document import Raw, document, mark, table
@@ -123,7 +124,7 @@ def _forces(summary: Summary) -> list[tuple[str, ...]]:
         ("force on the tool, by the flange sensor", summary.told_tool, ""),
         ("force on a link, at least, by the joints", summary.told_link, ""),
     ]
-    return [(name, *_peak(peak), "N", f"{peak.t:.3f}", against) for name, peak, against in rows]
+    return [(name, *_peak(peak), "N", f"{peak.t:.3f}", against) for name, peak, against in rows if isfinite(peak.value)]
 
 
 def _verdict(summary: Summary) -> str:

@@ -204,7 +204,7 @@ def _told(event: EventLine) -> Margin | None:
     """The parameter beyond its limit that an event tells of."""
     told = {"parameter", "value", "limit", "unit"}
     values = event.values
-    if not told <= values.keys() or not float(values["limit"]):
+    if not told <= values.keys() or not float(values["limit"]) or values["unit"] == "°":  # an angle is no share of a limit
         return None
     value, limit = float(values["value"]), float(values["limit"])
     return Margin(str(values["parameter"]), str(values["unit"]), value, limit, abs(value / limit), event.t)

@@ -75,18 +75,19 @@ class SafetyInputs:
             self._robot.happen(event, settings, events)
         robot = self._robot
         hit = None
-        if robot.mode is _STOP or robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE:
+        guided = robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE
+        if robot.mode is _STOP or guided:
             self._collisions.rest()
         else:
             forces = self._limits.forces(settings.robot_limits)
             presses = robot.move is None or asked
             hit = self._collisions.step(estimate, settings.collision, moves=not presses, most=forces)
         if robot.mode is _STOP:
-            self._limits.rest()
+            self._limits.rest(settings.robot_limits)
             return
         stop = hit or self._left_path(estimate, settings)
         if stop is None:
-            stop = self._limits.step(estimate, settings.robot_limits, moves=robot.move is not None)
+            stop = self._limits.step(estimate, settings.robot_limits, moves=robot.move is not None and not guided)
             if stop is not None and not motion_ok(estimate):
                 return  # lost sensors are told by themselves
         if stop is not None:
@@ -115,8 +116,8 @@ class SafetyInputs:
         limits = settings.robot_limits
         if Command.REDUCED_ON in commands:
             if self._limits.switch(True, limits):
-                reduced = limits.reduced
-                values: Values = {"tcp": reduced.tool_speed, "elbow": reduced.elbow_speed, "joint_speed": reduced.joint_speed}
+                speeds = self._limits.reduced_limits(limits).speeds
+                values: Values = {"tcp": speeds.tcp, "elbow": speeds.elbow, "joint_speed": speeds.joint}
                 events.append(Event(Kind.REDUCED_ON, tick, values))
         elif Command.REDUCED_OFF in commands and self._limits.switch(False, limits):
             events.append(Event(Kind.REDUCED_OFF, tick))

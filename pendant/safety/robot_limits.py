@@ -126,15 +126,18 @@ class LimitWatch:
         reduced: the input's level.
     """
 
-    NOT_STATE = ("_of", "_limits")  # they follow from the settings and the level
+    NOT_STATE = ("_of", "_limits", "_normal")  # they follow from the settings and the level
 
     def __init__(self, arm: ArmRating) -> None:
         self._arm = arm
         self.reduced = False
         self._grace = 0  # ticks left in which the arm may still be faster
         self._out = [inf] * len(arm.ranges)  # how far outside each joint may be [rad]
+        self._range: JointRange | None = None  # of the tick before
+        self._begun = False  # some tick was watched, or rested
         self._of: tuple[RobotLimitSettings, bool] | None = None
         self._limits: RobotLimits | None = None
+        self._normal: RobotLimits | None = None  # what holds until the arm has slowed down for REDUCED
 
     def switch(self, on: bool, settings: RobotLimitSettings) -> bool:
         """Take the input's level; returns whether it changed."""
@@ -148,16 +151,23 @@ class LimitWatch:
         """What holds now, None where the limits are switched off."""
         if self._of is None or self._of[0] is not settings or self._of[1] is not self.reduced:
             self._of = settings, self.reduced
-            self._limits = robot_limits(settings, self._arm, reduced=self.reduced) if settings.on else None
+            self._normal = robot_limits(settings, self._arm, reduced=False) if settings.on else None
+            self._limits = self.reduced_limits(settings) if settings.on and self.reduced else self._normal
         return self._limits
+
+    def reduced_limits(self, settings: RobotLimitSettings) -> RobotLimits:
+        """What holds in REDUCED."""
+        return robot_limits(settings, self._arm, reduced=True)
 
     def forces(self, settings: RobotLimitSettings) -> tuple[float, float]:
         """Largest forces of tool and link [N]."""
         limits = self.limits(settings)
         return NO_FORCES if limits is None else limits.forces
 
-    def rest(self) -> None:
+    def rest(self, settings: RobotLimitSettings) -> None:
         """The arm is stopped, and braked: what it exceeds meanwhile is no reason for another stop."""
+        limits = self.limits(settings)
+        self._grace, self._range, self._begun = 0, None if limits is None else limits.joint_range, True
         self._out[:] = [inf] * len(self._out)
 
     def step(self, estimate: Estimate, settings: RobotLimitSettings, *, moves: bool) -> Event | None:
@@ -169,12 +179,11 @@ class LimitWatch:
             moves: the arm follows a motion of its own: then it must be able to stop within the limits.
         """
         limits = self.limits(settings)
-        if limits is None:
-            return None
         if self._grace > 0:
             self._grace -= 1
-            if self.reduced:
-                return None
+            limits = self._normal if self.reduced else limits
+        if limits is None:
+            return None
         speeds, motion = limits.speeds, estimate.motion
         if not estimate.v_tcp <= speeds.tcp + SPEED_TOLERANCE:
             return _told(estimate, limits, Excess("tool speed", "tool", estimate.v_tcp, speeds.tcp, "m/s"))
@@ -196,6 +205,9 @@ class LimitWatch:
             return _told(
                 estimate, limits, Excess("stopping distance", "arm", motion.stopping_distance, speeds.stopping_distance, "m")
             )
+        if self._begun and limits.joint_range != self._range:  # a joint that is outside of new limits is stopped, then led back
+            self._out[:] = [POSITION_TOLERANCE] * len(self._out)
+        self._range, self._begun = limits.joint_range, True
         return None if limits.joint_range is None else self._outside(estimate, limits, limits.joint_range)
 
     def _outside(self, estimate: Estimate, limits: RobotLimits, joint_range: JointRange) -> Event | None:

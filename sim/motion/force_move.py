@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.program.steps import ApplyForce
+from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.motion.moves import MoveRefused, Reference, check_range
@@ -67,16 +68,17 @@ class ForceTrajectory:
         self._felt += self._smoothing * (force - self._felt)
         self._ahead = place - self._s
 
-    def step(self) -> Reference:
-        """The reference of the next tick."""
+    def step(self, limits: SpeedLimits | None = None) -> Reference:
+        """The reference of the next tick; `limits` are the robot's."""
+        most = self._move.speed if limits is None else min(self._move.speed, limits.tcp)
         missing = self._wanted - (self._felt or 0.0)
         self._lasted = self._lasted + TICK if abs(missing) <= self._move.tolerance else 0.0
         self.done = self.done or self._lasted > self._move.duration
         rate = self._ahead / FOLLOWING
-        fast = abs(rate) > self._move.speed
+        fast = abs(rate) > most
         if not fast:  # else the way is free, and nothing is to be made up for later
             self._size += INTEGRAL * missing * TICK
-        rate = 0.0 if abs(rate) < STANDS else math.copysign(min(abs(rate), self._move.speed), rate)
+        rate = 0.0 if abs(rate) < STANDS else math.copysign(min(abs(rate), most), rate)
         self._s += rate * TICK
         if abs(self._s) > self._move.distance:
             self.problem = f"force: {self._felt or 0.0:.1f} N after {1000.0 * self._move.distance:.0f} mm"

@@ -212,7 +212,7 @@ class References:
             self.refusal = self.refusal or motion.problem
             return reference
         assert isinstance(motion, Stop | ForceTrajectory)
-        return motion.step()
+        return motion.step() if isinstance(motion, Stop) else motion.step(decision.speed_limits)
 
     def _pushing(self, motion: Motion, now: Reference) -> Array | None:
         """Torque (n,) with which the joints push in this tick [N·m]."""

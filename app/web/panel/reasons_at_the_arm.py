@@ -35,7 +35,7 @@ def _text(event: Event) -> str:
     values = event.values
     name = values.get("parameter", "")
     unit = values.get("unit", "")
-    return f"{name}: {float(values['value']):.2g} {unit}, limit {float(values['limit']):.2g}".replace("  ", " ")
+    return f"{name}: {float(values['value']):.3g} {unit}, limit {float(values['limit']):.3g}".replace("  ", " ")
 
 
 def rgb(colour: Colour) -> tuple[int, int, int]:

@@ -40,8 +40,8 @@ class LimitPreset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     @property
     def settings(self) -> dict[str, Value]:
         """Values by the dotted names of the settings."""
-        modes = {"normal": self.normal, "reduced": self.reduced}
-        return {f"robot_limits.{mode}.{name}": value for mode, values in modes.items() for name, value in values.items()}
+        modes = {"normal": NormalLimits(**self.normal), "reduced": ReducedLimits(**self.reduced)}
+        return {f"robot_limits.{mode}.{name}": value for mode, held in modes.items() for name, value in _values(held)}
 
 
 class LimitPresets(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -88,8 +88,7 @@ def limit_presets() -> dict[str, LimitPreset]:
 def preset_of(settings: RobotLimitSettings) -> str:
     """Title of the preset whose values hold, or `OTHER`."""
     for title, preset in limit_presets().items():
-        sets = ((settings.normal, preset.normal), (settings.reduced, preset.reduced))
-        if all(getattr(held, name) == value for held, values in sets for name, value in values.items()):
+        if settings.normal == NormalLimits(**preset.normal) and settings.reduced == ReducedLimits(**preset.reduced):
             return title
     return OTHER
 
@@ -100,6 +99,15 @@ def told_limits(settings: RobotLimitSettings) -> Iterator[tuple[str, str, str, s
         values = [f"{row.factor * getattr(held, row.field):g} {row.unit}" for held in (settings.normal, settings.reduced)]
         yield row.name, values[0], values[1], _tolerance(row)
     yield POSITIONS.name, _positions(settings.normal), _positions(settings.reduced), _tolerance(POSITIONS)
+
+
+def _values(held: NormalLimits | ReducedLimits) -> Iterator[tuple[str, Value]]:
+    """Dotted names and values of all limits of a safety mode."""
+    for name in held.__struct_fields__:
+        if name != "positions":
+            yield name, getattr(held, name)
+    for name in held.positions.__struct_fields__:
+        yield f"positions.{name}", getattr(held.positions, name)
 
 
 def _tolerance(row: LimitRow) -> str:

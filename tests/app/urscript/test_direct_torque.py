@@ -93,7 +93,7 @@ def test_a_speed_takes_over_from_a_moving_arm(bench: Torques) -> None:
 @pytest.mark.parametrize(
     ("torque", "scales", "told"),
     [
-        ("[60,0,0,0,0,0]", f", {ALL}, {ALL}", "joint 1 moves at 3.3"),
+        ("[0,0,0,0,0,25]", f", {ALL}, {ALL}", "joint 6 moves at 3."),
         ("[0,0,0,0,0,3]", f", {NONE}, {NONE}", "joint 6 would stop at 6."),
     ],
 )

@@ -9,6 +9,7 @@ from pendant.all_settings import Settings, apply
 from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.jog_move import JogMove
+from pendant.program.steps import HandGuide, Program
 from pendant.safety import robot_limits as limits_module
 from pendant.safety.robot_limits import (
     ABOVE_RATED,
@@ -256,3 +257,51 @@ def test_an_angle_that_is_not_a_number_is_told_by_others() -> None:
     bench = positions()
     bench.run(60)
     assert Kind.LIMIT_EXCEEDED not in [event.kind for event in bench.step(NOTHING, at(np.nan)).events]
+
+
+def test_while_the_arm_slows_down_for_reduced_the_limits_of_normal_hold() -> None:
+    bench = Bench()
+    bench.step(ON)
+    bench.run(10, NOTHING, estimate(v_tcp=1.4))
+    assert bench.last.mode is Mode.TEACH, "more than REDUCED allows, for it has just begun"
+    bench.events.clear()
+    bench.step(NOTHING, estimate(v_tcp=1.56))
+    assert bench.last.mode is Mode.STOP
+    assert bench.events[0].values["mode"] == "NORMAL"
+
+
+def test_a_stop_ends_the_time_to_slow_down_in() -> None:
+    bench = Bench()
+    bench.step(ON)
+    bench.step(Inputs(commands=(Command.PROTECTIVE_STOP,)))
+    bench.step(LET_GO)
+    bench.run(100)
+    bench.step(RESET)
+    assert bench.step(NOTHING, estimate(v_tcp=0.9)).mode is Mode.STOP
+
+
+@pytest.mark.parametrize("before", [{}, {"robot_limits.normal.positions.j6_max": 3.0}])
+def test_a_joint_that_is_outside_of_new_limits_is_stopped_whatever_held_before(before: dict[str, float]) -> None:
+    bench = Bench(**before)
+    bench.run(20, NOTHING, at(1.0))
+    bench.step(Inputs(settings={"robot_limits.normal.positions.j1_max": 0.5}), at(1.0))
+    assert bench.step(NOTHING, at(1.0)).mode is Mode.STOP
+    bench.run(100, LET_GO, at(1.0))
+    bench.step(RESET, at(1.0))
+    assert bench.run(20, NOTHING, at(1.0)).mode is Mode.TEACH, "it may be led back"
+    assert bench.step(NOTHING, at(1.1)).mode is Mode.STOP, "and not further out"
+
+
+def test_an_arm_that_a_program_has_guided_needs_not_be_able_to_stop_by_itself() -> None:
+    """As one that is freed by the button: a hand moves it."""
+    bench = Bench()
+    bench.run(60)
+    bench.step(Inputs(program=Program(steps=(HandGuide(),))))
+    bench.run(300)
+    bench.step(Inputs(commands=(Command.START_PROGRAM,)))
+    for _ in range(2000):
+        if bench.step().mode is Mode.FREE_DRIVE:
+            break
+    assert bench.last.mode is Mode.FREE_DRIVE
+    bench.run(3, NOTHING, measured(stopping_time=0.9, stopping_distance=0.9))
+    assert bench.last.mode is Mode.FREE_DRIVE
