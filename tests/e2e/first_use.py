@@ -142,7 +142,7 @@ class FirstUse:
         low = cell.position("wrist_3")[2]
         event = self.first(Kind.CONTACT_GAINED)
         page.get_by_role("cell", name="gained").first.wait_for()
-        page.get_by_role("cell", name=f"{2 * int(event.values['steps'])} ms").first.wait_for()
+        page.get_by_role("cell", name=f"{2 * int(event.values['steps'])}", exact=True).first.wait_for()
         cell.wait(lambda: self.finished_after(event), "the program ends", 60.0)
         assert 0.04 < cell.position("wrist_3")[2] - low < 0.06
         self.see("contact")
