@@ -107,8 +107,10 @@ class Watch:
 def margin_within(value: float, least: float | None, most: float | None) -> float | None:
     """How far `value` lies within the nearest of two bounds, as a share of that bound: negative beyond it.
 
-    None where neither is a number but zero: of zero there is no share.
+    None where neither is a number but zero, for of zero there is no share; and where both are one: it is met, or it is not.
     """
+    if least == most:
+        return None
     found = [(value - bound) * sign / abs(bound) for bound, sign in ((least, 1.0), (most, -1.0)) if bound]
     return min(found) if found else None
 

@@ -90,6 +90,8 @@ class BoundsWatch(Watch):
 
     def margin(self) -> float | None:
         """See `Watch.margin`."""
+        if self.min == self.max:
+            return None  # as in margin_within
         found = [margin_within(self.low[0], self.min, None), margin_within(self.high[0], None, self.max)]
         return min((share for share in found if share is not None and math.isfinite(share)), default=None)
 

@@ -28,7 +28,7 @@ from pendant.settings.schema import SettingError
 from pendant.walls.containment import PARTS, TETHER
 from pendant.walls.definitions import AnyBorder, problem
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import AnyObject, Scenario, table
+from sim.arm.scenario import AnyObject, Cup, Scenario, ToolModel, table
 from sim.plant.changes import AttachPayload, DriveGripper, FrictionChange, MoveObject, SensorFault, Temperature, TrueChange
 
 LONGEST = 3600.0
@@ -101,7 +101,7 @@ def _check_action(action: Action, field: str, *, session: Session, prepared: Pre
         if why is not None:
             raise BadInput(where, f"{field}.move", ABSENT, why)
     elif isinstance(action, Laboratory | UseGripper):
-        _check_change(action.change, f"{field}.change", prepared, where)
+        _check_change(action.change, field if isinstance(action, UseGripper) else f"{field}.change", prepared, where)
 
 
 def check_walls(walls: list[AnyBorder], world: list[AnyObject], where: str, field: str = "walls") -> None:
@@ -114,11 +114,20 @@ def check_walls(walls: list[AnyBorder], world: list[AnyObject], where: str, fiel
         raise BadInput(where, field, ABSENT, why)
 
 
-def _check_change(change: TrueChange, field: str, prepared: Prepared, where: str) -> None:
-    tool = prepared.scenario.tool
-    if isinstance(change, DriveGripper) and (tool is None or tool.gripper is None):
+def _check_drive(change: DriveGripper, field: str, tool: ToolModel | None, where: str) -> None:
+    if tool is None or tool.gripper is None:
         raise BadInput(where, field.removesuffix(".change") + ".do", "gripper", "needs a tool with a gripper: `tool: two-finger`")
-    if isinstance(change, AttachPayload):
+    if isinstance(tool.gripper, Cup):
+        for name in ("speed", "force", "speed_share", "force_share"):
+            value = getattr(change, name)
+            if value is not None:
+                raise BadInput(where, f"{field}.{name}", value, f"{name} is of fingers; a cup draws, or does not")
+
+
+def _check_change(change: TrueChange, field: str, prepared: Prepared, where: str) -> None:
+    if isinstance(change, DriveGripper):
+        _check_drive(change, field, prepared.scenario.tool, where)
+    elif isinstance(change, AttachPayload):
         check_load(change.load, prepared.arm, where, f"{field}.load")
     elif isinstance(change, SensorFault):
         _check_channel(change, prepared.arm, where, f"{field}.channel")

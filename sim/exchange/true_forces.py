@@ -26,6 +26,8 @@ def true_forces(plant: Plant) -> tuple[float, float]:
         force = contact.frame.reshape(3, 3).T @ wrench[:3]  # on the second geom, in W
         for geom, sign in ((contact.geom1, -1.0), (contact.geom2, 1.0)):
             body = int(model.geom_bodyid[geom])
+            if body == plant.payload_body:  # a held part
+                body = flange
             if body in sums:
                 sums[body] += sign * force
     sizes = {body: float(np.linalg.norm(force)) for body, force in sums.items()}

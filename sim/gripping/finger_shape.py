@@ -23,13 +23,18 @@ def finger_size(fingers: Fingers) -> NDArray[np.float64]:
     return np.array([THICKNESS, fingers.pad, fingers.finger])
 
 
+def tip_height(tool: ToolModel) -> float:
+    """How far the fingertips are beyond the tool centre point, along z of the tool [m]: the fingers end where the tool does."""
+    return tool.length - float(np.dot(tool.tcp, rotation_from_rpy(tool.rpy)[:, 2]))
+
+
 def finger_poses(tool: ToolModel, fingers: Fingers, opening: float) -> NDArray[np.float64]:
     """Poses (2, 7) of the middles of both fingers in F: position [m], quaternion wxyz.
 
     They end where the tool does, and their pads lie on both sides of the tool centre point.
     """
     R = rotation_from_rpy(tool.rpy)
-    tip = tool.length - float(np.linalg.norm(tool.tcp)) - fingers.finger / 2.0  # of the middles beyond the tool centre point
+    middle = tip_height(tool) - fingers.finger / 2.0
     ways = np.array([-1.0, 1.0]) * (opening + THICKNESS) / 2.0
-    places = np.array(tool.tcp) + np.outer(ways, R[:, 0]) + tip * R[:, 2]
+    places = np.array(tool.tcp) + np.outer(ways, R[:, 0]) + middle * R[:, 2]
     return np.hstack([places, np.tile(quaternion_from_matrix(R), (2, 1))])

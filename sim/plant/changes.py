@@ -55,7 +55,9 @@ class MoveObject(TrueChange, tag="move_object", frozen=True, forbid_unknown_fiel
 
 
 class DriveGripper(TrueChange, tag="gripper", frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The gripper is driven, past everything that is wired to it. A cup that closes draws, and lets go when it opens."""
+    """The gripper is driven, past everything that is wired to it. A cup that closes draws, and lets go when it opens; it has
+    neither speed nor force to set.
+    """
 
     command: Literal["close", "open", "stop"] | None = None
     opening: Extent | None = None  # distance of the fingers to go to [m]

@@ -78,6 +78,7 @@ class Plant:
         self._driven = (model.actuator_biasprm, data.qfrc_applied)
         self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
         self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
+        self.payload_body = model.body("payload").id  # of what is carried
         self.hands = Hands(model, data, self._parts)
         self._held_parts = HeldParts(model, data, scenario.world, self.payload, flange=self.flange_body)
         self.gripper = self._gripper()

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import AnyPart, Cup, Fingers, ToolModel
 from sim.gripping.finger_drive import FingerDrive, GripperState, vacuum_force
-from sim.gripping.finger_shape import FINGERS, THICKNESS, finger_poses
+from sim.gripping.finger_shape import FINGERS, THICKNESS, finger_poses, tip_height
 from sim.gripping.grasp import Chord, chord, firm, seals
 from sim.gripping.grip_strength import GripContact, load_on_grip, pad_radius, strength_taken
 from sim.plant.changes import DriveGripper
@@ -48,6 +48,7 @@ class TrueGripper:
         self._kind, self._flange, self._velocity, self._span = tool.gripper, flange, velocity, span
         self._drive = FingerDrive(tool.gripper) if isinstance(tool.gripper, Fingers) else None
         self._point, self._R = np.array(tool.tcp), rotation_from_rpy(tool.rpy)
+        self._tip = tip_height(tool)
         self._draws = False  # the cup does
         self._taken = 0.0
         self._spin = (0.0, 0.0, 0.0)  # of the flange, a tick before [rad/s]
@@ -79,15 +80,12 @@ class TrueGripper:
         """Do what a laboratory, a program or a client of it asks."""
         drive = self._drive
         if drive is None:
-            if change.command is not None:
+            if change.command in ("close", "open"):
                 self._draws = change.command == "close"
             elif change.opening is not None:
                 self._draws = change.opening == 0.0
             if not self._draws:
                 self._slipped = ""
-            return
-        if change.command == "stop":
-            drive.stop()
             return
         ends = {"close": 0.0, "open": drive.fingers.stroke}
         own, speed, force = drive.fingers, change.speed, change.force
@@ -96,6 +94,8 @@ class TrueGripper:
         if change.force_share is not None:
             force = own.least_force + change.force_share * (own.most_force - own.least_force)
         drive.order(ends.get(change.command or "", change.opening), speed, force)
+        if change.command == "stop":
+            drive.stop()
 
     def wired(self, high: int) -> None:
         """Follow the digital outputs, given as bits: where one of the two changes, and only one of them is on, it acts."""
@@ -233,7 +233,7 @@ class TrueGripper:
         """A finger is in a part: looked at by lines through both of them, from the tips to the palm."""
         point, axes = self._frame()
         p, R = self._parts.pose(part)
-        own, tip = drive.fingers, self._tool.length - float(np.linalg.norm(self._point))
+        own, tip = drive.fingers, self._tip
         inner = 0.5 * drive.opening
         outer = inner + THICKNESS
         if float(np.linalg.norm(point - p)) > float(np.linalg.norm(part.size)) + own.finger + outer:

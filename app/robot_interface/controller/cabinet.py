@@ -1,6 +1,7 @@
 """The controller cabinet: the one robot as its network interfaces see it, and the way of their wishes into its ticks."""
 
 import threading
+from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import Any
@@ -13,7 +14,7 @@ from app.robot_interface.controller.field_record import BEGIN, FieldRecord
 from app.robot_interface.controller.measured_fields import MeasuredFields
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.controller.scripts_side import Scripts
-from app.robot_interface.controller.status_fields import StatusFields
+from app.robot_interface.controller.status_fields import ALL_OUTPUTS, StatusFields, set_outputs
 from app.session.actions import Action
 from app.session.timeline import Timeline
 from pendant.decision import Decision
@@ -32,6 +33,9 @@ from sim.simulation import Simulation
 
 AT_MOST = ticks(1.5)
 """Ticks that a wish waits for the arm to stand still; then the robot says itself that it moves."""
+
+MOST_DRIVES = 100
+"""Orders to the gripper that wait for the next tick: so many, the last ones, are kept while nothing is simulated."""
 
 
 class Cabinet:
@@ -75,7 +79,7 @@ class Cabinet:
         self._asked: list[Ask] = []  # of the tick that runs
         self._listeners: tuple[Listener, ...] = ()
         self._acts: list[Act] = []  # to begin with the next tick
-        self._drives: list[DriveGripper] = []  # for the next tick
+        self._drives: deque[DriveGripper] = deque(maxlen=MOST_DRIVES)  # for the next tick
         self.gripper: GripperState | None = None
         self._timeline = Timeline([], joints)
         self._static = False  # the arm stood still in the last tick
@@ -174,7 +178,8 @@ class Cabinet:
                 ask.waited += 1
             self._asked = [ask for ask in ready if ask.done.set_running_or_notify_cancel()]
             acts, self._acts = self._acts, []
-            drives, self._drives = self._drives, []
+            drives = tuple(self._drives)
+            self._drives.clear()
         for act in acts:
             if act.begun.set_running_or_notify_cancel():
                 self._timeline.add(act.actions, tick - 1)
@@ -201,8 +206,8 @@ class Cabinet:
         if self._simulation().plant.gripper is not None:
             outputs = int(self._switched.item())
         else:
-            drives = []
-        wishes = Wishes(inputs, (), tuple(drives), outputs).joined(self._timeline.wishes(tick, snapshot))
+            drives = ()
+        wishes = Wishes(inputs, (), drives, outputs).joined(self._timeline.wishes(tick, snapshot))
         return wishes if scripted is None else scripted.joined(wishes)
 
     def see(self, tick: int, decision: Decision) -> None:
@@ -251,10 +256,10 @@ class Cabinet:
             listener.again()
 
     def _begin(self) -> None:
-        """A simulation starts: faults of the one before are over, and who had control has it again."""
+        """A simulation starts: faults of the one before are over, outputs are low, and who had control has it again."""
         with self._lock:
             acts, self._acts = self._acts, []
-            self._drives = []
+            self._drives.clear()
         for act in acts:
             act.begun.cancel()
         self._timeline = Timeline([], self.joints)
@@ -265,6 +270,7 @@ class Cabinet:
         self._wanted = False
         if self.script is not None:
             self.script.begin()
+        set_outputs(self.record, ALL_OUTPUTS, 0)  # after the script, whose end may switch some
 
     def _understand(self, tick: int, decision: Decision) -> None:
         idle = None

@@ -20,6 +20,8 @@ PHASE = "output_int_register_24"
 TOOL_OUTPUT = 1 << 16
 """The tool's first digital output, which a program switches (CD-15)."""
 
+ALL_OUTPUTS = (1 << 18) - 1
+"""A mask of all digital outputs."""
 
 WORD_BITS = 32
 """Boolean registers in a word."""

@@ -25,6 +25,9 @@ UNKNOWN = b"?\n"
 WRITTEN = {"ACT": 1, "GTO": 1, "ATR": 1, "ARD": 1, "MOD": 255, "POS": FULL, "SPE": FULL, "FOR": FULL, "SID": 9}
 """Registers that can be set, and the largest value of each."""
 
+AT_START = {"ACT": 0, "GTO": 0, "ATR": 0, "ARD": 0, "MOD": 0, "POS": 0, "SPE": FULL, "FOR": FULL, "SID": 9}
+"""What the same are before anybody has set them."""
+
 CONSTANTS = {"LBP": 0, "LRD": 0, "LBL": 0, "LGN": 0, "MSC": 0, "COU": 0, "NCY": 0, "DST": 0, "PCO": 0}
 """Registers that a simulated gripper has no use for: lamps, motor current, counters."""
 
@@ -67,7 +70,7 @@ class GripperRegisters:
     def __init__(self, port: GripperPort) -> None:
         self._port = port
         self._lock = threading.Lock()
-        self._set = {"ACT": 0, "GTO": 0, "ATR": 0, "ARD": 0, "MOD": 0, "POS": 0, "SPE": FULL, "FOR": FULL, "SID": 9}
+        self._set = dict(AT_START)
         self._fault = 0
         self._activating = False
         self._ordered = -LATE  # tick of the last order
@@ -76,6 +79,11 @@ class GripperRegisters:
     def there(self) -> bool:
         """There is a gripper."""
         return self._port.gripper is not None
+
+    def begin(self) -> None:
+        """The simulation starts over: nothing has been set, and the gripper is not activated."""
+        with self._lock:
+            self._set, self._fault, self._activating, self._ordered = dict(AT_START), 0, False, -LATE
 
     def answer(self, line: str) -> bytes:
         """What is said to a line, without its end."""
@@ -99,13 +107,18 @@ class GripperRegisters:
     def _told(self, state: GripperState) -> dict[str, int]:
         """All that can be read."""
         own = self._set
-        moving = state.moving or self._port.ticks < self._ordered + LATE
-        if self._activating and not moving:
-            self._activating = False
+        moving = self._moving(state)
         at = place_of(state)
         active = 0 if not own["ACT"] else 1 if self._activating else 3
         found = 0 if moving else 2 if state.held else 3
         return {**CONSTANTS, **own, "POS": at, "PRE": own["POS"], "OBJ": found, "STA": active, "FLT": self._fault}
+
+    def _moving(self, state: GripperState) -> bool:
+        """It moves, or is about to. An activation is over where it does neither."""
+        moving = state.moving or self._port.ticks < self._ordered + LATE
+        if not moving:
+            self._activating = False
+        return moving
 
     def _write(self, words: list[str], state: GripperState) -> bytes:
         """Set registers, all or none."""
@@ -115,6 +128,7 @@ class GripperRegisters:
             if most is None or not re.fullmatch(r"\d{1,3}", text, re.ASCII) or int(text) > most:
                 return UNKNOWN
             wanted[name] = int(text)
+        self._moving(state)  # an activation that is over, and that nobody has asked about, is over here
         before, own = dict(self._set), self._set
         own.update(wanted)
         if own["ACT"] and not before["ACT"]:  # it opens, to find its ends

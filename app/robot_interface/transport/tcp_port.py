@@ -23,8 +23,8 @@ MOST_CONNECTIONS = 16
 BREATH = 0.5
 """After a connection that could not be taken, until the next one is [s]: files may be free again."""
 
-WEB = (b"GET ", b"POST ", b"PUT ", b"HEAD ", b"OPTIONS ", b"DELETE ", b"CONNECT ", b"PATCH ", b"TRACE ")
-"""How a browser's request begins: a web page must not be able to speak to a robot."""
+WEB = (b"GET /", b"POST ", b"PUT ", b"HEAD ", b"OPTIONS ", b"DELETE ", b"CONNECT ", b"PATCH ", b"TRACE ")
+"""How a browser's request begins: a web page must not be able to speak to a robot. `GET POS` is a line to a gripper."""
 
 
 class Conversation(Protocol):

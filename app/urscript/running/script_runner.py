@@ -225,6 +225,7 @@ class ScriptRunner:
         self._beside.end()
         self.memory.end()
         self.memory = RobotMemory(self.cabinet)
+        self.gripper.begin()
         self.arm.begin()  # the same one: a script that is being read has it already
 
     def _change(self) -> None:

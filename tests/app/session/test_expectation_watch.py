@@ -301,6 +301,8 @@ def touched(tick: int) -> Decision:
         (Displacement(min=0.04, max=0.2, end=0.11), None, 0.25),
         (Displacement(max=0.04, end=0.11), None, -0.25),
         (Displacement(min=0.0, end=0.11), None, None),  # of zero there is no share
+        (Displacement(min=0.05, max=0.05, end=0.11), None, None),  # an exact number is met, or not
+        (Reaches(of="tcp_speed", min=3.0, max=3.0, end=0.11), None, None),
         (Value(of="tcp_speed", max=4.0, end=0.11), None, 0.25),
         (Reaches(of="tcp_speed", min=2.0, end=0.11), None, 0.5),
         (State(mode=Mode.FREE_DRIVE, by=0.2), enters_at(50), 0.5),

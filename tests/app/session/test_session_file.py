@@ -149,6 +149,15 @@ def test_a_whole_header_reaches_the_scenario() -> None:
             {"timeline": [{"at": 0, "do": "change", "change": {"kind": "sensor", "sensor": "gyro", "channel": 3}}]},
             "timeline[0].change.channel = 3: 0 .. 2 for gyro",
         ),
+        ({"timeline": [{"at": 0, "do": "gripper", "command": "close"}]}, "timeline[0].do = gripper: needs a tool with a gripper"),
+        (
+            {"tool": "vacuum-cup", "timeline": [{"at": 0, "do": "gripper", "command": "close", "force": 50}]},
+            "timeline[0].force = 50.0: force is of fingers; a cup draws, or does not",
+        ),
+        (
+            {"tool": "vacuum-cup", "timeline": [{"at": 0, "do": "change", "change": {"kind": "gripper", "speed_share": 0}}]},
+            "timeline[0].change.speed_share = 0.0: speed_share is of fingers",
+        ),
         (
             {"expectations": [{"expect": "state", "mode": "TEACH", "at": 3}]},
             "expectations[0].at = 3.0: at most the duration, 2 s",

@@ -146,6 +146,33 @@ def test_a_cup_lifts_a_part_and_lets_it_go() -> None:
     assert state(made)[0] == ""
 
 
+def test_a_cup_that_is_told_to_stop_stays_as_it_is() -> None:
+    made = bench(FreeBox(name="part", position=[-0.45, -0.13, -0.035], size=[0.06, 0.06, 0.03], mass=1.0), "vacuum-cup", CUP)
+    made.change(DriveGripper(command="stop"))
+    made.run(0.1)
+    assert state(made)[0] == "", "it did not draw"
+    made.change(DriveGripper(command="close"))
+    made.run(0.1)
+    made.change(DriveGripper(command="stop"))
+    made.run(0.1)
+    assert state(made)[0] == "part"
+
+
+def test_fingers_stop_where_they_are_with_the_force_and_speed_that_are_told() -> None:
+    made = bench(box(y=0.2))
+    made.change(FULL)
+    made.run(0.2)
+    made.change(DriveGripper(command="stop", force=28.0, speed_share=0.0))
+    made.run(0.2)
+    _, moving, opening = state(made)
+    assert made.plant.gripper is not None
+    assert not moving
+    assert made.plant.gripper.state.force == 28.0
+    made.change(DriveGripper(command="open"))
+    made.run(0.1)
+    assert state(made)[2] - opening == pytest.approx(0.002, abs=1e-4), "0.1 s at the least speed, 0.02 m/s"
+
+
 def test_outputs_drive_it_where_only_one_is_on() -> None:
     made = bench(box())
     gripper = made.plant.gripper

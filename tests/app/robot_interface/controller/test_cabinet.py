@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from app.files.library import load_tool
+from app.robot_interface.controller.cabinet import MOST_DRIVES
 from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.robot_words import RobotMode, SafetyMode
 from app.robot_interface.controller.status_fields import (
@@ -20,7 +22,8 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import Command
 from pendant.program.steps import JointMove, Program, SetOutput
 from pendant.tick.modes import TICK, Law, Mode, Phase, Safety
-from sim.plant.changes import DropPayload
+from sim.arm.scenario import Scenario
+from sim.plant.changes import DriveGripper, DropPayload
 from tests.app.robot_interface.robot_bench import RobotBench
 from tests.sim.arms import UR5E
 
@@ -235,6 +238,33 @@ def test_levels_of_the_safety_inputs_are_told(command: Command, safety: Safety) 
     bench.page(command)
     assert bench.cabinet.state.safety is safety
     assert bench.cabinet.record.get("safety_mode") == {Safety.SAFEGUARD_STOP: 5, Safety.REDUCED: 2}[safety]
+
+
+def gripping() -> RobotBench:
+    return RobotBench(scenario=Scenario(mismatch="nominal", tool=load_tool("two-finger")))
+
+
+def test_outputs_of_before_are_low_and_close_no_gripper_after_a_restart() -> None:
+    bench = gripping()
+    bench.step(10)
+    set_outputs(bench.cabinet.record, 0x3FFFF, 0x20101)
+    bench.step()
+    assert bench.cabinet.gripper is not None
+    assert bench.cabinet.gripper.closing, "output 0 closes it"
+    bench.begin()
+    bench.step(5)
+    assert bench.cabinet.record.get("actual_digital_output_bits") == 0
+    assert bench.cabinet.record.get("actual_configurable_digital_output_bits") == 0
+    assert not bench.cabinet.gripper.closing
+
+
+def test_of_orders_to_a_gripper_that_is_not_simulated_the_last_ones_wait() -> None:
+    bench = gripping()
+    bench.step(10)
+    for k in range(10 * MOST_DRIVES):
+        bench.cabinet.drive(DriveGripper(force=20.0 + 0.1 * k))
+    changes = bench.cabinet.wishes(11, bench.simulation.snapshot).changes
+    assert changes == tuple(DriveGripper(force=20.0 + 0.1 * k) for k in range(9 * MOST_DRIVES, 10 * MOST_DRIVES))
 
 
 def test_outputs_that_a_program_switches_stand_in_the_image_beside_those_of_clients() -> None:

@@ -77,6 +77,36 @@ def test_it_stops_where_it_is_told_to_go_nowhere() -> None:
     assert registers.answer("GET FLT") == b"FLT 15\n"
 
 
+def test_an_activation_that_nobody_watched_is_over_all_the_same() -> None:
+    port = Port()
+    registers = GripperRegisters(port)
+    registers.answer("SET ACT 1")
+    port.ticks += 2
+    registers.answer("SET GTO 1 POS 255")
+    assert registers.answer("GET OBJ") == b"OBJ 0\n", "it moves"
+    assert registers.answer("GET STA") == b"STA 3\n", "and has been activated before"
+
+
+def test_an_activation_goes_on_while_the_fingers_open() -> None:
+    port = Port(OPEN._replace(moving=True, opening=0.04))
+    registers = GripperRegisters(port)
+    registers.answer("SET ACT 1")
+    port.ticks += 2
+    registers.answer("SET SPE 7")
+    assert registers.answer("GET STA") == b"STA 1\n"
+
+
+def test_nothing_is_left_of_what_was_set_where_the_simulation_starts_over() -> None:
+    port, registers = activated()
+    registers.answer("SET ATR 1 POS 255 SPE 7")
+    port.ticks += 1
+    registers.begin()
+    wanted = {"ACT": 0, "STA": 0, "GTO": 0, "ATR": 0, "PRE": 0, "SPE": 255, "FLT": 0, "OBJ": 3}
+    assert {name: registers.answer(f"GET {name}") for name in wanted} == {
+        name: f"{name} {value}\n".encode() for name, value in wanted.items()
+    }
+
+
 def test_programs_ask_which_grippers_there_are() -> None:
     _, registers = activated()
     assert registers.answer("GET SID") == b"[9]              "

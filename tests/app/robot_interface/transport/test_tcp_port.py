@@ -80,6 +80,15 @@ def test_a_web_page_cannot_speak_to_a_robot(method: bytes) -> None:
     served(talk)
 
 
+def test_a_gripper_may_be_asked_before_anything_is_set() -> None:
+    async def talk(port: TcpPort, where: tuple[str, int], peers: Peers) -> None:
+        reader, writer = await asyncio.open_connection(*where)
+        writer.write(b"GET STA\n")
+        assert await reader.readexactly(8) == b"GET STA\n"
+
+    served(talk)
+
+
 def test_one_connection_too_many_is_turned_away_and_the_others_stay() -> None:
     async def talk(port: TcpPort, where: tuple[str, int], peers: Peers) -> None:
         inside = [await asyncio.open_connection(*where) for _ in range(MOST_CONNECTIONS)]
