@@ -88,7 +88,7 @@ def serve_until_interrupted(
             loop.start()
             if record is not None:
                 recording.start().result()
-            scripts = scripts_beside(loop, prepared.arm) if interfaces is None else interfaces.scripts
+            scripts = arms.scripts(prepared.arm)
             robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
             page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson, arms=arms)
             served = _serve(partial(page, host=host, open_browser=open_browser), port=port, usual=usual)
@@ -142,6 +142,7 @@ class ServedArms:
     ) -> None:
         self._loop, self._recording, self._network, self._folder = loop, recording, network, folder
         self._interfaces: RobotInterfaces | None = None
+        self._beside: ScriptRunner | None = None  # runs programs without a network
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -155,11 +156,22 @@ class ServedArms:
         )
         return self._interfaces
 
+    def scripts(self, arm: Arm) -> ScriptRunner | None:
+        """What runs programs in URScript: that of the network interfaces, else a new one beside the page."""
+        if self._interfaces is not None:
+            return self._interfaces.scripts
+        self._beside = scripts_beside(self._loop, arm)
+        return self._beside
+
     def close(self) -> None:
-        """End the network interfaces, if they are open."""
+        """End the network interfaces, if they are open, and what programs have begun."""
         if self._interfaces is not None:
             self._interfaces.close()
             self._interfaces = None
+        if self._beside is not None:
+            self._loop.companion = None
+            self._beside.close()
+            self._beside = None
 
     def ready(self, name: str) -> ReadyArm:
         """See `ArmChange`."""
@@ -180,7 +192,6 @@ class ServedArms:
         loop, prepared = self._loop, arm.prepared
         told: list[str] = []
         self.close()
-        loop.companion = None
         try:
             loop.begin(lambda: simulate(prepared)).result()
         except (Exception, CancelledError) as error:
@@ -194,8 +205,7 @@ class ServedArms:
                 told.append("Network clients were parted from the last arm and can come again.")
             except BadInput as refusal:
                 told.append(f"The network interfaces have ended: {refusal}.")
-        scripts = scripts_beside(loop, prepared.arm) if self._interfaces is None else self._interfaces.scripts
-        return BroughtArm(self._interfaces, scripts, " ".join(told))
+        return BroughtArm(self._interfaces, self.scripts(prepared.arm), " ".join(told))
 
 
 def scripts_beside(loop: Loop, arm: Arm) -> ScriptRunner | None:

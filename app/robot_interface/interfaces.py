@@ -129,9 +129,10 @@ class RobotInterfaces:
         self._thread.start()
 
     def close(self) -> None:
-        """End all connections; requests that are still done are left to themselves."""
+        """End scripts and all connections; requests that are still done are left to themselves."""
         self._loop.companion = None
         self._loop.log.forget(self.cabinet.note)
+        self.scripts.close()
         if self._network is not None:
             with suppress(RuntimeError):  # it has ended already
                 self._network.call_soon_threadsafe(self._ended.set)

@@ -58,6 +58,11 @@ class NetworkRun:
         self._scripts.listen(self._take)
         self._verdicts: list[Verdict] = []
 
+    def close(self) -> None:
+        """The session is over: what runs still counts as running."""
+        self._scripts.forget(self._take)
+        self._scripts.close()
+
     def tick(self, number: int) -> None:
         """RTDE's fields are written for who listens."""
 

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -199,7 +199,10 @@ def run(
     watches = [watch(expectation, joints) for expectation in session.expectations]
     outcome = RunOutcome(seconds=session.duration)
     begun = time.perf_counter()
-    with nullcontext() if out is None else EventsFile(out / "events.jsonl") as file:
+    with (
+        nullcontext() if clients is None else closing(clients),
+        nullcontext() if out is None else EventsFile(out / "events.jsonl") as file,
+    ):
         last, tenth = ticks(session.duration), ticks(0.1)
         for tick in range(1, last + 1):
             wishes = timeline.wishes(tick, simulation.snapshot)

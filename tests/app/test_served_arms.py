@@ -1,6 +1,7 @@
 """One arm after the other in a served loop: network, recording, what was kept."""
 
 import socket
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from app.files.taught_program import Lesson, TaughtStep
 from app.kept_setup import Keeper
 from app.log.live import LiveRecording
 from app.log_reading.reader import read
+from app.robot_interface.controller.robot_words import RobotMode
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.ports import DASHBOARD
 from app.robot_serving import Network
@@ -89,6 +91,48 @@ def test_a_network_that_cannot_be_opened_again_has_ended_and_it_is_said(
     assert brought.scripts is not None
     assert "The network interfaces have ended" in brought.said
     assert loop.simulation.arm.name == "ur10e"
+
+
+UNIT = "127.77.1.2"
+"""Nobody is there."""
+
+
+def has_thread() -> bool:
+    return any(thread.name == f"modbus {UNIT}" for thread in threading.enumerate())
+
+
+@pytest.mark.parametrize("networked", [True, False])
+def test_what_scripts_have_begun_ends_with_their_robot(loop: Loop, tmp_path: Path, networked: bool) -> None:
+    network = Network(next(free_addresses())) if networked else None
+    arms = ServedArms(loop, LiveRecording(loop, tmp_path), network=network)
+    arms.open(UR5E)
+    scripts = arms.scripts(UR5E.arm)
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen(4)
+        server.settimeout(10.0)
+        text = f'''def p():
+  modbus_add_signal("{UNIT}", 255, 0, 2, "a")
+  socket_open("127.0.0.1", {server.getsockname()[1]}, "a")
+  while True:
+    sync()
+  end
+end'''
+        ends = [lambda: arms.bring(arms.ready("ur10e")), arms.close]
+        for end in ends:
+            assert scripts is not None
+            running = scripts
+            until(lambda running=running: running.cabinet.state.robot_mode is RobotMode.RUNNING, "the robot runs")
+            scripts.offer(text)
+            connection, _ = server.accept()
+            connection.settimeout(10.0)
+            assert has_thread()
+            brought = end()
+            with connection:
+                assert connection.recv(1) == b""
+            until(lambda: not has_thread(), "its thread has ended")
+            assert (running.state, running.trouble, loop.failure) == (None, None, "")
+            scripts = None if brought is None else brought.scripts
 
 
 def test_another_arm_begins_as_it_was_kept(loop: Loop, tmp_path: Path) -> None:

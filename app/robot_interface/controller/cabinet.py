@@ -50,6 +50,7 @@ class Cabinet:
         remote: it begins in remote control.
 
     Attributes:
+        between: as given.
         state: the controller as of the last tick, replaced whole; the loop's thread writes it.
         ticks: done so far, through resets too.
         gripper: as it was after the last tick, None without one; the loop's thread writes it.
@@ -68,7 +69,7 @@ class Cabinet:
         between: Between = at_once,
         remote: bool = True,
     ) -> None:
-        self._simulation, self.joints, self._high, self._between = simulation, joints, high, between
+        self._simulation, self.joints, self._high, self.between = simulation, joints, high, between
         self.programs = programs
         self.state = ControllerState(remote=remote)
         self.record = FieldRecord()
@@ -135,7 +136,7 @@ class Cabinet:
 
     def change(self, **values: Any) -> "Future[None]":
         """Have fields of `state` changed that no tick decides, such as `popup`; it is so when the result is there."""
-        return self._between(lambda: self.set(**values))
+        return self.between(lambda: self.set(**values))
 
     def set(self, **values: Any) -> None:
         """The same at once, on the loop's thread."""
@@ -149,11 +150,11 @@ class Cabinet:
             rates[encoder] = rate
             self.set(conveyors=tuple(rates))
 
-        return self._between(turn)
+        return self.between(turn)
 
     def look(self, *names: str) -> "Future[tuple[float | list[float], ...]]":
         """The values of output fields of RTDE after the tick done last, worked out now."""
-        return self._between(lambda: self._worked_out(names))
+        return self.between(lambda: self._worked_out(names))
 
     def _worked_out(self, names: tuple[str, ...]) -> tuple[float | list[float], ...]:
         self.refresh()

@@ -126,7 +126,8 @@ def _of_input_actions(robot: RobotSide) -> Iterator[Builtin]:
     def follow(name: str, state: int) -> None:
         if not robot.memory.units.signal(name).kind.output:
             raise Misuse(f"signal_name: {name} is no output")
-        robot.memory.installed.choose(OutputKind.MODBUS, name, state)
+        if robot.hosts.reached(robot.memory.units.place(name).address) is not None:
+            robot.memory.installed.choose(OutputKind.MODBUS, name, state)
 
     signal = Taken("signal_name", text)
     yield builtin("modbus_set_digital_input_action", by_signal, signal, Taken("action", text))

@@ -1,5 +1,6 @@
 """Functions of sockets (URScript manual, module interfaces). A timeout of 0 waits for as long as it takes."""
 
+import re
 from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
@@ -16,6 +17,12 @@ MOST_READ = 30
 MOST_IN_A_ROW = 4
 """Reads of what has come already with no tick between them: a client that floods a program neither ends nor blocks it."""
 
+ABSENT = 2.0
+"""socket_open() takes so long for a host that is not there, where its timeout says no time [s]: that of the default."""
+
+WHOLE_NUMBER = re.compile(r"-?\d{1,9}", re.ASCII)
+"""What socket_get_var() takes for a value."""
+
 Reading = Generator[None, None, Value]
 
 
@@ -24,15 +31,19 @@ def of_sockets(sockets: ScriptSockets) -> Iterator[Builtin]:
 
     def opened(address: str, port: int, name: str, timeout: float) -> Reading:
         begun = sockets.begin(address, port, name)
-        for _ in _ticks(timeout or 2.0):
-            if begun is not None:
-                connection, where = begun
-                if connection.connected(where):
-                    return True
-                if connection.broken:
-                    break
+        if begun is None:
+            for _ in _ticks(timeout if timeout > 0.0 else ABSENT):
+                yield
+            return False
+        connection, where = begun
+        for _ in _ticks(timeout or ABSENT):
+            if connection.connected(where):
+                return True
+            if connection.broken:
+                break
             yield
-        sockets.close(name)
+        if sockets.get(name) is connection:  # else another thread has opened one of this name meanwhile
+            sockets.close(name)
         return False
 
     def read(name: str, timeout: float, take: Callable[[ScriptSocket], Any], failed: Value) -> Reading:
@@ -85,8 +96,8 @@ def of_sockets(sockets: ScriptSockets) -> Iterator[Builtin]:
         if connection is None or not connection.send(f"GET {name}\n".encode()):
             return 0
         answer = yield from read(socket, timeout, lambda c: c.text(b"", b"\n"), "")
-        word = str(answer).split()[-1] if str(answer).split() else "0"
-        return int(word) if word.lstrip("-").isdigit() and len(word) < 10 else 0
+        words = str(answer).split()
+        return int(words[-1]) if words and WHOLE_NUMBER.fullmatch(words[-1]) else 0
 
     def send(data: bytes, name: str) -> bool:
         connection = sockets.get(name)

@@ -78,6 +78,7 @@ class ModbusSignal:
     watchdog: float = WATCHDOG  # [s]
     values: tuple[int, ...] = ()  # read last
     wanted: tuple[int, ...] | None = None  # to be written
+    lasting: bool = False  # what is wanted stays so until the unit is there: the program's state
     device_error: int = 0  # exception of the protocol
     connected: bool = False  # the last request was answered
     due: float = 0.0  # when it is read next [s]
@@ -93,6 +94,12 @@ class ModbusSignal:
     def valid(self) -> bool:
         """It was read, and written, without an error."""
         return self.connected and self.device_error == 0
+
+    def fail(self) -> None:
+        """A request was not answered: what a program wanted written is not written later."""
+        self.connected = False
+        if not self.lasting:
+            self.wanted = None
 
 
 class CustomRequest(ModbusPDU):
@@ -172,7 +179,7 @@ class ModbusUnit(threading.Thread):
             if client.connected or client.connect():
                 return self._exchanged(client)
         for signal in self.signals:
-            signal.connected = False
+            signal.fail()
         return AGAIN
 
     def _exchanged(self, client: ModbusTcpClient) -> float:
@@ -185,7 +192,8 @@ class ModbusUnit(threading.Thread):
                 try:
                     self._exchange(client, signal, wanted)
                 except WRONG:
-                    signal.connected, signal.due = False, time.monotonic() + AGAIN
+                    signal.fail()
+                    signal.due = time.monotonic() + AGAIN
                     client.close()  # what still comes would be taken for the next answer
                     return 0.0
                 if wanted is not None and signal.wanted is wanted:

@@ -1,5 +1,6 @@
 """Functions of Modbus signals (URScript manual, module interfaces)."""
 
+import re
 from collections.abc import Callable, Generator, Iterator, Sequence
 
 from app.urscript.language.trouble import Misuse
@@ -35,7 +36,7 @@ def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
     def place(ip: str) -> UnitPlace:
         """Where a unit is; the port may be left out."""
         host, _, port = ip.rpartition(":") if ip.count(":") == 1 else (ip, "", "")
-        if port and not (port.isdigit() and 0 < int(port) < 1 << 16):
+        if port and not (re.fullmatch(r"\d{1,5}", port, re.ASCII) and 0 < int(port) < 1 << 16):
             raise Misuse(f"IP: {ip[:50]!r}; expected ADDRESS or ADDRESS:PORT")
         address = hosts.reached(host)
         return UnitPlace(address or host, int(port or PORT), address is not None)
@@ -63,7 +64,9 @@ def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
             found: Sequence[Value] = value if type(value) is tuple else (value,)
             if len(found) != signal.taken:
                 raise Misuse(f"{len(found)} values, the signal has {signal.taken}")
-            units.write(name, [int(check(each)) & 0xFFFF for each in found])
+            words = [int(check(each)) & 0xFFFF for each in found]
+            if hosts.reached(units.place(name).address) is not None:
+                units.write(name, words)
 
         return write
 
@@ -74,8 +77,9 @@ def of_modbus(units: ModbusUnits, hosts: AllowedHosts) -> Iterator[Builtin]:
             send_custom(unit.address, unit.port, request)
 
     def frequency(name: str, wanted: float) -> None:
-        units.signal(name).frequency = wanted
-        units.refresh(name)
+        if hosts.reached(units.place(name).address) is not None:
+            units.signal(name).frequency = wanted
+            units.refresh(name)
 
     def watchdog(name: str, seconds: float) -> None:
         units.signal(name).watchdog = seconds

@@ -55,6 +55,11 @@ class ModbusUnits:
             raise Misuse(f"signal_name: there is no signal {name[:20]!r}")
         return self._signals[name][1]
 
+    def place(self, name: str) -> UnitPlace:
+        """Where the unit of a signal is. Raises Misuse: there is no signal of this name."""
+        self.signal(name)
+        return self._signals[name][0].place
+
     def read(self, name: str) -> tuple[int, ...]:
         """What a signal was when it was in order last.
 
@@ -73,10 +78,10 @@ class ModbusUnits:
         """For how long a signal has been out of order [s]."""
         return 0.0 if signal.valid else self._clock() - signal.seen
 
-    def write(self, name: str, values: Sequence[int]) -> None:
-        """Have an output written as soon as its unit is free."""
+    def write(self, name: str, values: Sequence[int], *, lasting: bool = False) -> None:
+        """Have an output written as soon as its unit is free; one that is not there is not written later, unless `lasting`."""
         unit, signal = self._signals[name]
-        signal.wanted = tuple(values)
+        signal.lasting, signal.wanted = lasting, tuple(values)
         unit.hurry()
 
     def refresh(self, name: str) -> None:

@@ -127,19 +127,18 @@ class XmlRpcServer(RemoteHandle):
 
     def connect(self) -> Generator[None, None, None]:
         """Wait until the server is there. Raises Misuse: it is not."""
-        connection = socket.socket(socket.AF_INET6 if ":" in self._address else socket.AF_INET, socket.SOCK_STREAM)
-        try:
-            connection.setblocking(False)
-            for _ in range(round(CONNECTING * TICK_RATE)):
-                number = connection.connect_ex((self._address, self._port))
-                if number in (0, 106):  # done, EISCONN
-                    return
-                if number not in (11, 114, 115):  # EAGAIN, EALREADY, EINPROGRESS
-                    break
-                yield
-            raise Misuse(f"there is no server at {self.host}")
-        finally:
-            connection.close()
+        with contextlib.suppress(OSError):  # no socket, or an address that is none for this machine
+            connection = socket.socket(socket.AF_INET6 if ":" in self._address else socket.AF_INET, socket.SOCK_STREAM)
+            with connection:
+                connection.setblocking(False)
+                for _ in range(round(CONNECTING * TICK_RATE)):
+                    number = connection.connect_ex((self._address, self._port))
+                    if number in (0, 106):  # done, EISCONN
+                        return
+                    if number not in (11, 114, 115):  # EAGAIN, EALREADY, EINPROGRESS
+                        break
+                    yield
+        raise Misuse(f"there is no server at {self.host}")
 
     def call(self, name: str, arguments: list[Value]) -> Generator[None, None, Value]:
         """See `RemoteHandle.call`."""

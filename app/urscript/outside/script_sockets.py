@@ -4,6 +4,7 @@ import contextlib
 import re
 import socket
 import struct
+from abc import ABC, abstractmethod
 
 from app.robot_interface.gripper.gripper_registers import NUMBER, GripperLines, GripperRegisters
 from app.urscript.language.trouble import Misuse
@@ -18,69 +19,29 @@ LOCAL = "127.0.0.1"
 """Where a program finds what runs in the robot itself."""
 
 
-class ScriptSocket:
+class ScriptSocket(ABC):
     """One connection."""
 
-    def __init__(self, connection: socket.socket) -> None:
-        self._socket = connection
+    def __init__(self) -> None:
         self.open = False
         self.broken = False
         self.data = bytearray()  # came, and was not read
         self.in_a_row = 0  # reads without a tick between them
-        self._out = bytearray()  # was sent, and has not left
 
+    @abstractmethod
     def connected(self, address: tuple[str, int]) -> bool:
         """Whether the connection stands by now."""
-        if not self.open and not self.broken:
-            number = self._socket.connect_ex(address)
-            if number in (0, 106):  # done, EISCONN
-                self.open = True
-            elif number not in (11, 114, 115):  # EAGAIN, EALREADY, EINPROGRESS
-                self.broken = True
-        return self.open
 
+    @abstractmethod
     def look(self) -> None:
         """Take what has come, and send what waits."""
-        self._push()
-        while self.open and len(self.data) < FULL:
-            try:
-                found = self._socket.recv(CHUNK)
-            except BlockingIOError:
-                return
-            except OSError:
-                self.broken = True
-                return
-            if not found:
-                self.broken = True
-                return
-            self.data += found
-            if len(found) < CHUNK:
-                return
 
+    @abstractmethod
     def send(self, data: bytes) -> bool:
         """Send; False: the connection is broken, or the other side does not read."""
-        if not self.open or self.broken or len(self._out) + len(data) > FULL:
-            return False
-        self._out += data
-        self._push()
-        return not self.broken
-
-    def _push(self) -> None:
-        while self._out and not self.broken:
-            try:
-                count = self._socket.send(self._out)
-            except BlockingIOError:
-                return
-            except OSError:
-                self.broken = True
-                return
-            del self._out[:count]
 
     def close(self) -> None:
         """End it."""
-        with contextlib.suppress(OSError):
-            self._push()
-            self._socket.close()
         self.open = False
 
     def integers(self, count: int) -> list[int] | None:
@@ -126,11 +87,78 @@ class ScriptSocket:
         return found
 
 
+class TcpSocket(ScriptSocket):
+    """A connection to a server."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        super().__init__()
+        self._socket = connection
+        self._out = bytearray()  # was sent, and has not left
+
+    def connected(self, address: tuple[str, int]) -> bool:
+        """See `ScriptSocket.connected`."""
+        if not self.open and not self.broken:
+            try:
+                number = self._socket.connect_ex(address)
+            except OSError:  # the address is none for this machine
+                self.broken = True
+                return False
+            if number in (0, 106):  # done, EISCONN
+                self.open = True
+            elif number not in (11, 114, 115):  # EAGAIN, EALREADY, EINPROGRESS
+                self.broken = True
+        return self.open
+
+    def look(self) -> None:
+        """See `ScriptSocket.look`."""
+        self._push()
+        while self.open and len(self.data) < FULL:
+            try:
+                found = self._socket.recv(CHUNK)
+            except BlockingIOError:
+                return
+            except OSError:
+                self.broken = True
+                return
+            if not found:
+                self.broken = True
+                return
+            self.data += found
+            if len(found) < CHUNK:
+                return
+
+    def send(self, data: bytes) -> bool:
+        """See `ScriptSocket.send`."""
+        if not self.open or self.broken or len(self._out) + len(data) > FULL:
+            return False
+        self._out += data
+        self._push()
+        return not self.broken
+
+    def _push(self) -> None:
+        while self._out and not self.broken:
+            try:
+                count = self._socket.send(self._out)
+            except BlockingIOError:
+                return
+            except OSError:
+                self.broken = True
+                return
+            del self._out[:count]
+
+    def close(self) -> None:
+        """See `ScriptSocket.close`."""
+        with contextlib.suppress(OSError):
+            self._push()
+            self._socket.close()
+        super().close()
+
+
 class GripperSocket(ScriptSocket):
     """A connection to the robot's own gripper, whose port is in the robot itself: answers are there at once."""
 
     def __init__(self, registers: GripperRegisters) -> None:
-        super().__init__(socket.socket())
+        super().__init__()
         self._lines = GripperLines(registers)
 
     def connected(self, address: tuple[str, int]) -> bool:
@@ -164,7 +192,8 @@ class ScriptSockets:
         self._sockets: dict[str, ScriptSocket] = {}
 
     def begin(self, host: str, port: int, name: str) -> tuple[ScriptSocket, tuple[str, int]] | None:
-        """Begin a connection; one of the same name is ended. None: the host may not be called.
+        """Begin a connection; one of the same name is ended. None: the host may not be called, or this machine has
+        no socket for it.
 
         Raises:
             Misuse: there are too many.
@@ -178,10 +207,13 @@ class ScriptSockets:
         if port == NUMBER and address == LOCAL and self._gripper is not None and self._gripper.there:
             self._sockets[name] = own = GripperSocket(self._gripper)
             return own, (address, port)
-        connection = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
+        try:
+            connection = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
+        except OSError:  # without IPv6, or with too many files
+            return None
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._sockets[name] = made = ScriptSocket(connection)
+        self._sockets[name] = made = TcpSocket(connection)
         return made, (address, port)
 
     def get(self, name: str) -> ScriptSocket | None:

@@ -59,7 +59,7 @@ class RobotMemory:
         return self.units.step() if self.units.used else ""
 
     def end(self) -> None:
-        """The robot starts over."""
+        """The robot starts over, or is there no more."""
         self.units.end()
 
     def _place(self, *, flange: bool) -> Callable[[], PoseValue]:

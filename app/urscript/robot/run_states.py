@@ -76,7 +76,7 @@ class InstalledSignals:
         record = self._cabinet.record
         if isinstance(number, str):
             if number in self._units:
-                self._units.write(number, [int(on)] * self._units.signal(number).taken)
+                self._units.write(number, [int(on)] * self._units.signal(number).taken, lasting=True)
         elif kind is OutputKind.DIGITAL:
             set_outputs(record, 1 << number, on << number)
         elif kind is OutputKind.ANALOG:

@@ -3,6 +3,8 @@
 import threading
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import CancelledError
+from contextlib import suppress
 
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.robot_words import RobotMode, RuntimeState
@@ -28,6 +30,9 @@ from sim.exchange.desk import Wishes
 
 KEPT = 200
 """Messages that are remembered."""
+
+PARTING = 1.0
+"""Time in which a tick must have ended, so that all that scripts have begun can end [s]."""
 
 BREATHLESS = (
     "warning: line {}: the program computes without end; a sync() or sleep() in such a loop lets the robot do other things"
@@ -121,6 +126,11 @@ class ScriptRunner:
     def resume(self) -> None:
         """Let it go on, as soon as the arm stands."""
         self._orders.halt(False)
+
+    def close(self) -> None:
+        """The robot is there no more: programs, connections and threads of its end, as soon as a tick that runs is done."""
+        with suppress(CancelledError, TimeoutError):  # the loop has ended, or does it later
+            self.cabinet.between(self._end_all).result(PARTING)
 
     def tell(self, told: Told) -> None:
         """Tell everybody."""
@@ -221,12 +231,16 @@ class ScriptRunner:
 
     def begin(self) -> None:
         """The simulation starts over: no script runs."""
-        self._end(None)
-        self._beside.end()
-        self.memory.end()
+        self._end_all()
         self.memory = RobotMemory(self.cabinet)
         self.gripper.begin()
         self.arm.begin()  # the same one: a script that is being read has it already
+
+    def _end_all(self) -> None:
+        """No script runs, and nothing is left that one has begun."""
+        self._end(None)
+        self._beside.end()
+        self.memory.end()
 
     def _change(self) -> None:
         """Do what others asked for since the last tick."""

@@ -47,7 +47,7 @@ class SecondaryPrograms:
         return inputs
 
     def end(self) -> None:
-        """The simulation starts over: none runs any more."""
+        """None runs any more."""
         for script, _ in self._running:
             self._close(script, None)
         self._running = []

@@ -1,5 +1,7 @@
 """Programs that a session's client sends: what they say and how they end is judged."""
 
+import socket
+import threading
 from typing import Any
 
 import pytest
@@ -9,6 +11,7 @@ from app.files.checked import convert
 from app.runs.runner import run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session
+from tests.app.web.raw_client import until
 
 HELLO = 'def hello():\n  textmsg("one")\n  textmsg("two")\nend\n'
 ENDLESS = "def on():\n  while True:\n    sync()\n  end\nend\n"
@@ -60,3 +63,18 @@ def test_a_second_one_takes_the_place_of_the_first_and_each_has_its_own_lines() 
 def test_a_secondary_one_is_refused() -> None:
     with pytest.raises(BadInput, match=r"timeline\[0\]\.text.*of a secondary one no end is told"):
         verdicts({"at": 0.3, "text": "sec quick():\n  set_standard_digital_out(1, True)\nend\n"})
+
+
+def test_what_scripts_have_begun_ends_with_the_session() -> None:
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen(1)
+        opens = f'  socket_open("127.0.0.1", {server.getsockname()[1]})\n  modbus_add_signal("127.77.1.3", 255, 0, 2, "a")\n'
+        text = ENDLESS.replace("def on():\n", f'def on():\n{opens}  textmsg("there")\n')
+        assert verdicts({"at": 0.3, "text": text, "tells": ["there"]}) == [(False, "it still runs"), (True, '"there"')]
+        server.settimeout(10.0)
+        connection, _ = server.accept()
+        connection.settimeout(10.0)
+        with connection:
+            assert connection.recv(1) == b""
+    until(lambda: not any(thread.name == "modbus 127.77.1.3" for thread in threading.enumerate()), "its thread has ended")

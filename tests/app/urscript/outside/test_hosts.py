@@ -8,7 +8,7 @@ import pytest
 
 from app.urscript.language.trouble import Misuse
 from app.urscript.outside.hosts import AllowedHosts
-from app.urscript.outside.modbus_client import ModbusUnit
+from app.urscript.outside.modbus_client import FREQUENCY, ModbusUnit
 from tests.app.urscript.script_bench import ScriptBench
 
 
@@ -143,6 +143,29 @@ def test_a_unit_of_another_sender_is_not_called_for_a_program_that_may_not(
     bench.run('modbus_add_signal("10.1.2.3", 255, 0, 2, "ours")')
     assert [[each.name for each in unit.signals] for unit in begun] == [["theirs"]]
     bench.runner.memory.units.end()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        'modbus_set_output_register("theirs", 5)',
+        'modbus_set_signal_update_frequency("theirs", 50)',
+        'modbus_set_runstate_dependent_choice("theirs", 3)',
+    ],
+)
+def test_nothing_is_sent_to_a_unit_of_another_sender_for_a_program_that_may_not(
+    bench: ScriptBench, monkeypatch: pytest.MonkeyPatch, call: str
+) -> None:
+    monkeypatch.setattr(ModbusUnit, "start", lambda _: None)
+    bench.runner.offer('modbus_add_signal("10.1.2.3", 255, 0, 3, "theirs")', frozenset({"10.1.2.3"}))
+    bench.robot.step(5)
+    signal = bench.runner.memory.units.signal("theirs")
+    assert bench.run(call) == ([f"address: 10.1.2.3 {RULE}; {ABSENT}"], "")
+    assert (signal.wanted, signal.frequency) == (None, FREQUENCY)
+    bench.runner.offer(call, frozenset({"10.1.2.3"}))
+    bench.robot.step(5)
+    assert (signal.wanted, signal.frequency) != (None, FREQUENCY)
+    bench.runner.begin()
 
 
 def test_a_host_is_told_once_and_not_more_hosts_than_people_read(bench: ScriptBench) -> None:

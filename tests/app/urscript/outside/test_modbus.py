@@ -210,6 +210,34 @@ def test_a_unit_that_comes_back_is_connected_again(bench: ScriptBench) -> None:
     assert told == ["there", "gone", "103"]
 
 
+def test_what_is_written_to_a_unit_that_is_not_there_is_not_written_later(bench: ScriptBench) -> None:
+    """But what follows the program's state is: the unit must not take a program for running that is over."""
+    port = free_port()
+    names = ("word", "run")
+    watchdogs = "\n".join(f'modbus_set_signal_watchdog("{name}", 60)' for name in names)
+    writes = 'modbus_set_runstate_dependent_choice("run", 3)\nmodbus_set_output_register("word", 4711)\nsleep(1)'
+    assert paced(bench, whole(add(port, '41, 3, "word"'), add(port, '42, 3, "run"'), watchdogs, writes)) == ([], "")
+    server = Modbus(port)
+    word, run = map(bench.runner.memory.units.signal, names)
+    end = time.monotonic() + 10.0
+    while not (word.valid and run.valid and run.values == (0,)):
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    server.close()
+    assert word.values == (141,)
+    assert server.heard.count(6) == 1
+
+
+def test_what_a_silent_unit_does_not_answer_is_not_written_again(bench: ScriptBench) -> None:
+    with raw_server(silent) as port:
+        assert bench.run(whole(add(port, '41, 3, "word"'), 'modbus_set_output_register("word", 4711)')) == ([], "")
+        word, end = bench.runner.memory.units.signal("word"), time.monotonic() + 10.0
+        while word.wanted is not None:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        assert not word.connected
+
+
 def silent(connection: socket.socket) -> None:
     while connection.recv(1 << 12):
         pass
@@ -257,6 +285,7 @@ def test_an_output_follows_the_programs_state_and_an_input_asks_for_free_drive(b
         ('modbus_get_signal_status("none", False)', "signal_name: there is no signal 'none'"),
         ('modbus_add_signal("127.0.0.1", 255, 0, 7, "a")', "signal_type: 7 is out of range, allowed: 0 to 3"),
         ('modbus_add_signal("127.0.0.1:x", 255, 0, 1, "a")', "IP: '127.0.0.1:x'; expected ADDRESS or ADDRESS:PORT"),
+        ('modbus_add_signal("127.0.0.1:²", 255, 0, 1, "a")', "IP: '127.0.0.1:²'; expected ADDRESS or ADDRESS:PORT"),
         ('modbus_add_signal("127.0.0.1", 255, 0, 1, "")', "signal_name: '' has 0 characters, allowed: 1 to 20"),
         ('modbus_send_custom_command("127.0.0.1", 1, 6, [300])', "300 is out of range, allowed: 0 to 255"),
         ('modbus_reset_connection("127.0.0.1")', "connection_id: there is no signal at 127.0.0.1"),
