@@ -86,7 +86,7 @@ class SafetyInputs:
             self._limits.rest(settings.robot_limits)
             return
         stop = hit or self._left_path(estimate, settings)
-        if stop is None:
+        if stop is None and not robot.braking:  # an arm that has left free-drive is braked as a stop would brake it
             stop = self._limits.step(estimate, settings.robot_limits, moves=robot.move is not None and not guided)
             if stop is not None and not motion_ok(estimate):
                 return  # lost sensors are told by themselves

@@ -34,13 +34,13 @@ class LimitPreset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     title: str
     assumed: bool  # the values are not the maker's; then the source is the rule that they follow
     source: str
-    normal: dict[str, float]
-    reduced: dict[str, float]
+    normal: NormalLimits
+    reduced: ReducedLimits
 
     @property
     def settings(self) -> dict[str, Value]:
         """Values by the dotted names of the settings."""
-        modes = {"normal": NormalLimits(**self.normal), "reduced": ReducedLimits(**self.reduced)}
+        modes = {"normal": self.normal, "reduced": self.reduced}
         return {f"robot_limits.{mode}.{name}": value for mode, held in modes.items() for name, value in _values(held)}
 
 
@@ -88,7 +88,7 @@ def limit_presets() -> dict[str, LimitPreset]:
 def preset_of(settings: RobotLimitSettings) -> str:
     """Title of the preset whose values hold, or `OTHER`."""
     for title, preset in limit_presets().items():
-        if settings.normal == NormalLimits(**preset.normal) and settings.reduced == ReducedLimits(**preset.reduced):
+        if (settings.normal, settings.reduced) == (preset.normal, preset.reduced):
             return title
     return OTHER
 

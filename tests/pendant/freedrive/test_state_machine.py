@@ -182,7 +182,7 @@ def test_a_flange_sensor_lost_in_free_drive_takes_its_help_away_for_good(bad: Es
 def test_a_leaving_that_nobody_asked_for_tells_the_way_back_to_the_posture_at_activation(told: bool) -> None:
     """FD-22, and only where it is switched on."""
     bench = Bench(free_drive__way_back=told).entered(estimate(q=[0.5, -1.0, 1.5, -0.25, 0.75, 0.0]))
-    bench.step(HOLD, estimate(q=[0.5, -1.1, 1.7, -0.25, 0.75, 0.0], v_tcp=2.0))
+    bench.step(HOLD, estimate(q=[0.5, -1.1, 1.7, -0.25, 0.75, 0.0], v_tcp=1.53))
     left, *others = bench.last.events
     assert left.kind is Kind.LEFT_LIMIT
     values = {"joints": "elbow -11.5°, shoulder +5.7°", "posture": "0.5000 -1.0000 1.5000 -0.2500 0.7500 0.0000"}

@@ -325,7 +325,7 @@ def test_a_drop_in_the_robot_removes_the_gain_in_its_tick_and_stops() -> None:
 
 def test_an_involuntary_leaving_tells_the_way_back_and_one_that_was_asked_for_does_not() -> None:
     robot = Robot()
-    away = estimate(q=[0.1, 0.0, 0.0, 0.0, 0.0, -0.2], v_tcp=2.0, load_mass=2.0, needed=TWO)
+    away = estimate(q=[0.1, 0.0, 0.0, 0.0, 0.0, -0.2], v_tcp=1.53, load_mass=2.0, needed=TWO)
     robot.step(away)
     assert [event.kind for event in robot.events[-2:]] == [Kind.LEFT_LIMIT, Kind.WAY_BACK]
     assert robot.events[-1].values["joints"] == "wrist_3 +11.5°, base -5.7°"

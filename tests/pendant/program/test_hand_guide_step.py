@@ -114,7 +114,7 @@ def test_a_short_press_ends_it_and_the_program_goes_on() -> None:
 def test_after_any_other_ending_somebody_must_look() -> None:
     bench = guided(GUIDE, NEXT, free_drive__period=5.0, limits__operation__tcp_speed__max=0.2)
     bench.run(80)
-    bench.run(60, value=estimate(v_tcp=2.0, force=5.0))
+    bench.run(60, value=estimate(v_tcp=1.4, force=5.0))
     assert Kind.LEFT_LIMIT in kinds(bench)
     assert (bench.last.mode, bench.last.program) == (Mode.RUN, ProgramState.PAUSED)
     bench.run(60)

@@ -119,4 +119,5 @@ def test_only_what_is_known_is_left_out() -> None:
         "Barrier": ["_shape"],
         "Containment": ["_workspace"],
         "Anchor": ["_decide"],
+        "LimitWatch": ["_of", "_limits", "_normal"],
     }

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pendant.all_settings import apply
 from pendant.inputs import Inputs
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
@@ -21,7 +22,7 @@ from sim.rigid_body.dynamics import Dynamics
 from sim.sensing import calibration
 from sim.sensing.sensors import Sample
 from tests.sim.arms import PROBE, TWO_KG, UR5E
-from tests.sim.bench import CENTRE, Bench, push
+from tests.sim.bench import CENTRE, LONG, Bench, push
 
 G = 9.81
 FLOOR, WALL, TILTED = [0.0, 0.0, 0.0], [0.0, np.pi / 2, 0.0], [0.6, 0.4, 0.2]
@@ -290,7 +291,8 @@ def test_a_payload_that_is_configured_but_absent_looks_like_a_lift() -> None:
 @pytest.mark.parametrize("accelerometer", [True, False], ids=["measured", "from the model"])
 def test_inertia_of_a_payload_in_fast_motion_is_no_user_force(accelerometer: bool) -> None:
     """2 kg at up to 1.8 m/s and full acceleration."""
-    bench = Bench(Scenario(mismatch="nominal", payload_true=TWO_KG, payload_configured=TWO_KG))
+    faster = apply(LONG, {"robot_limits.on": False})
+    bench = Bench(Scenario(mismatch="nominal", payload_true=TWO_KG, payload_configured=TWO_KG), settings=faster)
     if not accelerometer:
         bench.change(SensorFault(sensor="accelerometer", outage=True))
     bench.run(0.3)
