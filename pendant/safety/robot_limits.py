@@ -134,7 +134,7 @@ class LimitWatch:
         self._grace = 0  # ticks left in which the arm may still be faster
         self._out = [inf] * len(arm.ranges)  # how far outside each joint may be [rad]
         self._range: JointRange | None = None  # of the tick before
-        self._begun = False  # some tick was watched, or rested
+        self._mode: Safety | None = None  # of its limits
         self._of: tuple[RobotLimitSettings, bool] | None = None
         self._limits: RobotLimits | None = None
         self._normal: RobotLimits | None = None  # what holds until the arm has slowed down for REDUCED
@@ -167,7 +167,8 @@ class LimitWatch:
     def rest(self, settings: RobotLimitSettings) -> None:
         """The arm is stopped, and braked: what it exceeds meanwhile is no reason for another stop."""
         limits = self.limits(settings)
-        self._grace, self._range, self._begun = 0, None if limits is None else limits.joint_range, True
+        self._grace = 0
+        self._range, self._mode = (None, None) if limits is None else (limits.joint_range, limits.mode)
         self._out[:] = [inf] * len(self._out)
 
     def step(self, estimate: Estimate, settings: RobotLimitSettings, *, moves: bool) -> Event | None:
@@ -205,9 +206,11 @@ class LimitWatch:
             return _told(
                 estimate, limits, Excess("stopping distance", "arm", motion.stopping_distance, speeds.stopping_distance, "m")
             )
-        if self._begun and limits.joint_range != self._range:  # a joint that is outside of new limits is stopped, then led back
-            self._out[:] = [POSITION_TOLERANCE] * len(self._out)
-        self._range, self._begun = limits.joint_range, True
+        if limits.joint_range != self._range:
+            # Who narrows limits round a standing arm may lead it back; one that REDUCED finds outside is stopped first.
+            switched = self._mode is not None and self._mode is not limits.mode
+            self._out[:] = [POSITION_TOLERANCE if switched else inf] * len(self._out)
+        self._range, self._mode = limits.joint_range, limits.mode
         return None if limits.joint_range is None else self._outside(estimate, limits, limits.joint_range)
 
     def _outside(self, estimate: Estimate, limits: RobotLimits, joint_range: JointRange) -> Event | None:

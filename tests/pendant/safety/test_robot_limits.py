@@ -281,11 +281,21 @@ def test_a_stop_ends_the_time_to_slow_down_in() -> None:
 
 
 @pytest.mark.parametrize("before", [{}, {"robot_limits.normal.positions.j6_max": 3.0}])
-def test_a_joint_that_is_outside_of_new_limits_is_stopped_whatever_held_before(before: dict[str, float]) -> None:
+def test_a_joint_that_is_outside_of_new_limits_may_be_led_back_whatever_held_before(before: dict[str, float]) -> None:
     bench = Bench(**before)
     bench.run(20, NOTHING, at(1.0))
     bench.step(Inputs(settings={"robot_limits.normal.positions.j1_max": 0.5}), at(1.0))
-    assert bench.step(NOTHING, at(1.0)).mode is Mode.STOP
+    assert bench.run(20, NOTHING, at(1.0)).mode is Mode.TEACH
+    assert bench.step(NOTHING, at(1.1)).mode is Mode.STOP, "not further out"
+
+
+@pytest.mark.parametrize("before", [{}, {"robot_limits.normal.positions.j6_max": 3.0}])
+def test_a_joint_that_reduced_finds_outside_is_stopped_whatever_held_before(before: dict[str, float]) -> None:
+    bench = Bench(**before, **{"robot_limits.reduced.positions.j1_max": 0.5})
+    bench.run(20, NOTHING, at(1.0))
+    bench.step(ON, at(1.0))
+    assert bench.run(249, NOTHING, at(1.0)).mode is Mode.TEACH
+    assert bench.run(2, NOTHING, at(1.0)).mode is Mode.STOP
     bench.run(100, LET_GO, at(1.0))
     bench.step(RESET, at(1.0))
     assert bench.run(20, NOTHING, at(1.0)).mode is Mode.TEACH, "it may be led back"
