@@ -108,39 +108,37 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     program: ProgramUse = ProgramUse()
 
 
-def _rows(section: type[Section], prefix: str) -> list[SettingRow]:
+def _rows(shipped: Section, prefix: str) -> list[SettingRow]:
+    """The rows of a section as it ships."""
     rows: list[SettingRow] = []
-    hints = get_type_hints(section, include_extras=True)
-    for field in msgspec.structs.fields(section):
-        hint = hints[field.name]
+    hints = get_type_hints(type(shipped), include_extras=True)
+    for name in shipped.__struct_fields__:
+        hint, default = hints[name], getattr(shipped, name)
         if hint is float:  # the value of a limit: its range is said where the limit is
             continue
         if get_origin(hint) is not Annotated:
-            rows += _rows(hint, f"{prefix}{field.name}.")
+            rows += _rows(default, f"{prefix}{name}.")
             continue
         meta: Meta = get_args(hint)[1]
         extra: dict[str, Any] = meta.extra or {}
-        basic, text = field.name in section.BASIC, meta.description or ""
-        if isinstance(field.default, Limit):
-            limit, *others = _limit_rows(prefix + field.name, field.default, text, extra)
+        basic, text = name in shipped.BASIC, meta.description or ""
+        if isinstance(default, Limit):
+            limit, *others = _limit_rows(prefix + name, default, text, extra)
             rows += [limit._replace(basic=basic), *others]
             continue
         low, high = (None, None) if meta.ge is None else (float(meta.ge), float(meta.le or 0.0))
         marks = {key: extra[key] for key in ("unit", "id", "locked")}
-        rows.append(SettingRow(prefix + field.name, field.default, low, high, text=text, basic=basic, **marks))
+        rows.append(SettingRow(prefix + name, default, low, high, text=text, basic=basic, **marks))
     return rows
 
 
 def _limit_rows(name: str, default: Limit, text: str, extra: dict[str, Any]) -> list[SettingRow]:
     """The rows of one limit: its value and what all limits have."""
     first = SettingRow(f"{name}.max", default.max, text=text, locked=True, basic=False, **extra)
-    rows = [first]
-    for row in _rows(type(default), f"{name}."):
-        rows.append(row._replace(default=getattr(default, row.name.rpartition(".")[2]), text=f"{text}: {row.text}"))
-    return rows
+    return [first, *[row._replace(text=f"{text}: {row.text}") for row in _rows(default, f"{name}.")]]
 
 
-_ROWS = {row.name: row for row in _rows(Settings, "")}
+_ROWS = {row.name: row for row in _rows(Settings(), "")}
 
 
 def describe() -> list[SettingRow]:

@@ -75,8 +75,10 @@ class JointPositions(Section, frozen=True, forbid_unknown_fields=True, kw_only=T
     j6_max: Annotated[float, _angle(6, "largest")] = FURTHEST
 
 
-class NormalLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The robot's limits in the safety mode NORMAL, as shipped the third of four presets (assets/limits/robot-limits.yaml)."""
+class ModeLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The robot's limits in one safety mode; as shipped those of NORMAL of the third of four presets
+    (assets/limits/robot-limits.yaml).
+    """
 
     BASIC = ("tool_speed", "elbow_speed", "tool_force", "elbow_force")
 
@@ -92,21 +94,17 @@ class NormalLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     positions: JointPositions = JointPositions()
 
 
-class ReducedLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The same in the safety mode REDUCED. What is larger than in NORMAL counts as equal to that."""
-
-    BASIC = ("tool_speed", "elbow_speed", "tool_force", "elbow_force")
-
-    tool_speed: Speed = 0.75
-    elbow_speed: ElbowSpeed = 0.75
-    joint_speed: JointSpeed = 6.4832
-    tool_force: ToolForce = 120.0
-    elbow_force: ElbowForce = 120.0
-    momentum: Momentum = 10.0
-    power: Power = 200.0
-    stopping_time: StoppingTime = 0.3
-    stopping_distance: StoppingDistance = 0.3
-    positions: JointPositions = JointPositions()
+REDUCED = ModeLimits(
+    tool_speed=0.75,
+    elbow_speed=0.75,
+    tool_force=120.0,
+    elbow_force=120.0,
+    momentum=10.0,
+    power=200.0,
+    stopping_time=0.3,
+    stopping_distance=0.3,
+)
+"""As shipped in the safety mode REDUCED, of the same preset. What is larger than in NORMAL counts as equal to that."""
 
 
 class RobotLimitSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -118,5 +116,5 @@ class RobotLimitSettings(Section, frozen=True, forbid_unknown_fields=True, kw_on
     transition: Annotated[float, _number(0.1, 1.0, "s", "RL-4", text="time in which the arm slows down when REDUCED begins")] = (
         0.5
     )
-    normal: NormalLimits = NormalLimits()
-    reduced: ReducedLimits = ReducedLimits()
+    normal: ModeLimits = ModeLimits()
+    reduced: ModeLimits = REDUCED

@@ -18,7 +18,7 @@ from pendant.safety.robot_limits import (
     SPEED_TOLERANCE,
     TIME_TOLERANCE,
 )
-from pendant.safety.settings import FURTHEST, NormalLimits, ReducedLimits, RobotLimitSettings
+from pendant.safety.settings import FURTHEST, ModeLimits, RobotLimitSettings
 from pendant.settings.schema import Value
 
 AS_SHIPPED = "As shipped"
@@ -34,8 +34,8 @@ class LimitPreset(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     title: str
     assumed: bool  # the values are not the maker's; then the source is the rule that they follow
     source: str
-    normal: NormalLimits
-    reduced: ReducedLimits
+    normal: ModeLimits
+    reduced: ModeLimits
 
     @property
     def settings(self) -> dict[str, Value]:
@@ -101,7 +101,7 @@ def told_limits(settings: RobotLimitSettings) -> Iterator[tuple[str, str, str, s
     yield POSITIONS.name, _positions(settings.normal), _positions(settings.reduced), _tolerance(POSITIONS)
 
 
-def _values(held: NormalLimits | ReducedLimits) -> Iterator[tuple[str, Value]]:
+def _values(held: ModeLimits) -> Iterator[tuple[str, Value]]:
     """Dotted names and values of all limits of a safety mode."""
     for name in held.__struct_fields__:
         if name != "positions":
@@ -114,7 +114,7 @@ def _tolerance(row: LimitRow) -> str:
     return "" if row.tolerance is None else f"{row.factor * row.tolerance:.4g} {row.unit}"
 
 
-def _positions(limits: NormalLimits | ReducedLimits) -> str:
+def _positions(limits: ModeLimits) -> str:
     """The joints whose range is limited, by their numbers."""
     held, told = limits.positions, list[str]()
     for joint in range(1, len(held.__struct_fields__) // 2 + 1):

@@ -8,14 +8,14 @@ import pytest
 
 from app.web.tuning.limit_presets import AS_SHIPPED, OTHER, POSITIONS, ROWS, limit_presets, preset_of, told_limits
 from pendant.all_settings import Settings, apply, value_of
-from pendant.safety.settings import NormalLimits, ReducedLimits
 
 GUIDE = (Path(__file__).parents[4] / "docs" / "guide" / "stops.md").read_text(encoding="utf-8")
 
 
 def test_every_limit_has_a_row_on_the_page_and_in_the_docs() -> None:
-    fields = [field.name for field in msgspec.structs.fields(NormalLimits)]
-    assert fields == [field.name for field in msgspec.structs.fields(ReducedLimits)]
+    shipped = Settings().robot_limits
+    fields = [field.name for field in msgspec.structs.fields(shipped.normal)]
+    assert fields == [field.name for field in msgspec.structs.fields(shipped.reduced)]
     assert sorted(fields) == sorted([*[row.field for row in ROWS], POSITIONS.field])
     page = list(told_limits(Settings().robot_limits))
     assert [row[0] for row in page] == [*[row.name for row in ROWS], POSITIONS.name]
