@@ -18,7 +18,7 @@ from pendant.safety.robot_limits import SpeedLimits
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.rigid_body.dynamics import Dynamics
-from sim.rigid_body.newton_euler import cross, place, turned, turned_back
+from sim.rigid_body.newton_euler import about, cross, place, turned, turned_back
 
 Array = NDArray[np.float64]
 
@@ -181,9 +181,7 @@ def _momentum(own, rigid, places, qd):
                 origins[i + 1, 1] - origins[i, 1],
                 origins[i + 1, 2] - origins[i, 2],
             )
-            lever = cross(ahead, P)
-            L = (L[0] + lever[0], L[1] + lever[1], L[2] + lever[2])
-            S = (S[0] + mass * ahead[0], S[1] + mass * ahead[1], S[2] + mass * ahead[2])
+            L, S = about(ahead, (P, L), (S, mass))
         P = (P[0] + linear[i, 0], P[1] + linear[i, 1], P[2] + linear[i, 2])
         L = (L[0] + angular[i, 0], L[1] + angular[i, 1], L[2] + angular[i, 2])
         S = (S[0] + heavy[i, 0], S[1] + heavy[i, 1], S[2] + heavy[i, 2])

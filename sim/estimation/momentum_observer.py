@@ -24,7 +24,7 @@ from sim.compiled.record import record
 from sim.estimation.torque_errors import TorqueErrors, begin, forget, learn, look, touched
 from sim.estimation.transmission_torque import SETTLE_TICKS
 from sim.rigid_body.dynamics import Dynamics
-from sim.rigid_body.newton_euler import cross, turned, turned_back
+from sim.rigid_body.newton_euler import about, cross, turned, turned_back
 
 Array = NDArray[np.float64]
 
@@ -222,9 +222,7 @@ def _momentum(own, rigid, motion, out) -> None:
             a = rigid.origins[i + 1]
             b = rigid.origins[i]
             ahead = (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-            lever = cross(ahead, P)
-            L = (L[0] + lever[0], L[1] + lever[1], L[2] + lever[2])
-            S = (S[0] + mass * ahead[0], S[1] + mass * ahead[1], S[2] + mass * ahead[2])
+            L, S = about(ahead, (P, L), (S, mass))
         P = (P[0] + linear[i, 0], P[1] + linear[i, 1], P[2] + linear[i, 2])
         L = (L[0] + angular[i, 0], L[1] + angular[i, 1], L[2] + angular[i, 2])
         S = (S[0] + weight[i, 0], S[1] + weight[i, 1], S[2] + weight[i, 2])

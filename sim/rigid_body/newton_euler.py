@@ -122,6 +122,27 @@ def _norm(a):
 
 
 @kernel
+def about(ahead, acting, heavy):
+    """What all links beyond have about the next joint, about this one, which lies `ahead` (3,) before it.
+
+    Args:
+        ahead: from this joint to the next one [m].
+        acting: a force or momentum (3,), and its moment (3,) about the next joint.
+        heavy: mass times centre (3,) from there [kg·m], and mass [kg].
+
+    Returns:
+        The moment (3,), and mass times centre (3,).
+    """
+    f, m = acting
+    S, mass = heavy
+    lever = cross(ahead, f)
+    return (
+        (m[0] + lever[0], m[1] + lever[1], m[2] + lever[2]),
+        (S[0] + mass * ahead[0], S[1] + mass * ahead[1], S[2] + mass * ahead[2]),
+    )
+
+
+@kernel
 def place(model, i, behind, pose) -> None:
     """Pose (p, R) of joint i, of the flange after the last, placed in the pose `behind` of the joint before it."""
     p_at, R_at = model.p_at[i], model.R_at[i]
@@ -229,9 +250,7 @@ def _inverse(own, p, R, motion):
     for i in range(n - 1, -1, -1):
         if i < n - 1:
             ahead = (p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1], p[i + 1, 2] - p[i, 2])
-            lever = cross(ahead, f)
-            m = (m[0] + lever[0], m[1] + lever[1], m[2] + lever[2])
-            S = (S[0] + mass * ahead[0], S[1] + mass * ahead[1], S[2] + mass * ahead[2])
+            m, S = about(ahead, (f, m), (S, mass))
         f = (f[0] + force[i, 0], f[1] + force[i, 1], f[2] + force[i, 2])
         m = (m[0] + moment[i, 0], m[1] + moment[i, 1], m[2] + moment[i, 2])
         S = (S[0] + heavy[i, 0], S[1] + heavy[i, 1], S[2] + heavy[i, 2])
