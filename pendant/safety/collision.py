@@ -61,11 +61,7 @@ class Collisions:
         if not settings.on:
             return None
         least = settings.force if moves else settings.clamping
-        tool, link = forces = _forces(estimate)
-        if tool + MORE <= (tool_least := min(least, most[0])) and link + MORE <= (link_least := min(least, most[1])):
-            self._allowed[:] = tool_least, link_least  # far from both, as mostly
-            return None
-        for k, force in enumerate(forces):
+        for k, force in enumerate(_forces(estimate)):
             limit = self._allowed[k] = max(min(least, most[k]), min(self._allowed[k], force + MORE))
             if not force <= limit < inf:
                 joint = self._joints[-1 if k == 0 else estimate.link_force.joint]
