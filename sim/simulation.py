@@ -119,7 +119,7 @@ class Simulation:
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self.current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self.current)  # as it comes one tick late: what the first tick will know
-        self._gripper = self.plant.gripper  # a device of the arm: its object-detected input is a measurement
+        self.gripper = self.plant.gripper  # a device of the arm: its object-detected input is a measurement
         self._decision: Decision | None = None
         self._estimate: Estimate | None = None
         self._pulls = PullWatch()
@@ -189,7 +189,7 @@ class Simulation:
         self.watch.read(
             sample, estimate, answered.q if answered is not None and estimator.started else None, free=before is _FREE
         )
-        gripper, inputs = self._gripper, wishes.inputs
+        gripper, inputs = self.gripper, wishes.inputs
         if gripper is not None and gripper.detected_input is not None:
             inputs = replace(inputs, high=inputs.high | {gripper.detected_input})
         decision = supervisor.step(estimate, inputs)

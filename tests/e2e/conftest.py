@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from app.files.library import load_arm
 from app.log.live import LiveRecording
-from app.serving import ServedArms
+from app.serving import ServedArms, scripts_beside
 from app.web.server import Served, serve
 from sim.arm.scenario import Scenario
 from sim.run.loop import Loop
@@ -69,6 +69,15 @@ def served(loop: Loop) -> Iterator[Served]:
     app = serve(loop, loop.simulation.arm, loop.simulation.scenario, recording=recording, arms=arms)
     yield app
     app.close()
+
+
+@pytest.fixture
+def served_with_scripts(loop: Loop) -> Iterator[Served]:
+    """With the tab for scripts, as `pendant serve` has it."""
+    arm = loop.simulation.arm
+    page = serve(loop, arm, loop.simulation.scenario, scripts=scripts_beside(loop, arm))
+    yield page
+    page.close()
 
 
 @pytest.fixture

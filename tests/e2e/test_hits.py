@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from playwright.sync_api import Page, expect
 
 from app.files.library import load_arm
-from app.serving import scripts_beside
-from app.web.server import Served, serve
+from app.web.server import Served
 from pendant.events.event import Event, Kind
 from pendant.tick.modes import Mode, Safety
 from sim.arm.scenario import BoxObject, Scenario, ToolModel
@@ -45,12 +44,8 @@ def loop() -> Iterator[Loop]:
 
 
 @pytest.fixture
-def served(loop: Loop) -> Iterator[Served]:
-    """With the tab for scripts, as `pendant serve` has it."""
-    arm = loop.simulation.arm
-    page = serve(loop, arm, loop.simulation.scenario, scripts=scripts_beside(loop, arm))
-    yield page
-    page.close()
+def served(served_with_scripts: Served) -> Served:
+    return served_with_scripts
 
 
 def hit_of(cell: Cell) -> Event:

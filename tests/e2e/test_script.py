@@ -1,14 +1,12 @@
 """A program in the robot's own language, run from the page without a network."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Page
 
-from app.serving import scripts_beside
-from app.web.server import Served, serve
+from app.web.server import Served
 from pendant.events.event import Kind
-from sim.run.loop import Loop
 from tests.e2e.cell import Cell
 from tests.e2e.test_everyday import open_tab
 
@@ -16,12 +14,8 @@ pytestmark = pytest.mark.e2e
 
 
 @pytest.fixture
-def served(loop: Loop) -> Iterator[Served]:
-    """With the tab for scripts, as `pendant serve` has it."""
-    arm = loop.simulation.arm
-    page = serve(loop, arm, loop.simulation.scenario, scripts=scripts_beside(loop, arm))
-    yield page
-    page.close()
+def served(served_with_scripts: Served) -> Served:
+    return served_with_scripts
 
 
 def test_run_the_example_and_mend_a_mistake(visit: Callable[..., Page], cell: Cell) -> None:

@@ -204,7 +204,7 @@ class Cabinet:
                 remote_signal=inputs.remote_signal,
             )
         outputs = None
-        if self._simulation().plant.gripper is not None:
+        if self._simulation().gripper is not None:
             outputs = int(self._switched.item())
         else:
             drives = ()
@@ -215,7 +215,7 @@ class Cabinet:
         """Take in what the robot decided, and tell everybody."""
         self.ticks += 1
         self._static = decision.static
-        gripper = self._simulation().plant.gripper
+        gripper = self._simulation().gripper
         self.gripper = None if gripper is None else gripper.state
         listeners = self._listeners
         self._timeline.see(tick, decision)
@@ -240,7 +240,7 @@ class Cabinet:
         """Have the record say how the last tick was: it is kept up only while somebody listens, or a script reads it."""
         if self._seen is not None:
             self._measured.fill(self._simulation(), self._seen)
-            gripper = self._simulation().plant.gripper
+            gripper = self._simulation().gripper
             detected = None if gripper is None else gripper.detected_input
             high = self._high() | self._timeline.high
             self._status.fill(self.state, self._seen, high if detected is None else high | {detected})
