@@ -146,7 +146,7 @@ class Equipping:
         if reason or self._shape is None:
             events.append(Event(Kind.WIZARD_REFUSED, estimate.tick, {"reason": reason}))
             return
-        walls = tuple([(border, place) for border, place in self._containment.every_place(settings.walls) if border.on])
+        walls = tuple([(border, place) for border, place in self._containment.every_place(settings.walls) if border.keeps])
         self._begin = estimate.q.copy()
         self._room = WristRoom(self._shape, self._begin, tooling.fitting.tool, settings.tools, borders=walls)
         self._watch.begin(estimate, self._mean.mean()[:3])

@@ -155,7 +155,8 @@ class Supervisor:
         if commands:
             self._safety.step(estimate, commands, self.settings, events, held=self._button.held)
             self._obey(estimate, commands, events)
-        self._safety.watch(estimate, self.settings, events, asked=self._robot.move is not None and self._run.presses)
+        asked, beyond = self._robot.move is not None and self._run.presses, self.containment.beyond(estimate, self.settings.walls)
+        self._safety.watch(estimate, self.settings, events, asked=asked, beyond=beyond)
         self._run.step(estimate, inputs, self.settings, events, monitor=self._monitor, changing=self._tooling.changing)
         self._free_drive(estimate, wrench_ok, events)
         mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else self._robot.mode

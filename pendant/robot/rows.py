@@ -64,8 +64,8 @@ SAFETY: dict[Kind, EventRow] = {
     Kind.SAFEGUARD_CLOSED: info("Safeguard closed", "Reset to go on."),
     Kind.REDUCED_ON: info(
         "Reduced speed",
-        "Tool {tcp:.2f} m/s, elbow {elbow:.2f} m/s, joints {joint_speed:.2f} rad/s at most.",
-        ("tcp", "elbow", "joint_speed"),
+        "Because of {cause}: tool {tcp:.2f} m/s, elbow {elbow:.2f} m/s, joints {joint_speed:.2f} rad/s at most.",
+        ("cause", "tcp", "elbow", "joint_speed"),
     ),
     Kind.REDUCED_OFF: info("Reduced speed off"),
     Kind.STOPPED: info(

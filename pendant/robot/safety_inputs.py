@@ -1,4 +1,4 @@
-"""The safety inputs: emergency stop, safeguard, REDUCED, lost motor angles, and the reset after a stop (FD-1)."""
+"""The safety inputs: emergency stop, safeguard, REDUCED, lost motor angles, and the reset after a stop (FD-1, RL-7)."""
 
 from pendant.all_settings import Settings
 from pendant.events.event import Event, Kind, Values
@@ -19,7 +19,7 @@ BLIND = ticks(0.1)
 class SafetyInputs:
     """Their levels, and what they do to the robot."""
 
-    __slots__ = ("_blind", "_collisions", "_joints", "_limits", "_robot", "_safeguard")
+    __slots__ = ("_beyond", "_blind", "_collisions", "_input", "_joints", "_limits", "_robot", "_safeguard")
 
     def __init__(self, robot: Robot, rating: ArmRating, elbow: int) -> None:
         """
@@ -32,6 +32,8 @@ class SafetyInputs:
         self._limits = LimitWatch(rating)
         self._collisions = Collisions(rating.names, elbow)
         self._safeguard = False  # it is open
+        self._input = False  # level of the input of REDUCED
+        self._beyond = ""  # name of the area beyond which REDUCED holds
         self._blind = 0  # ticks for which some motor angle has been out
 
     def limits(self, settings: Settings) -> RobotLimits | None:
@@ -59,15 +61,21 @@ class SafetyInputs:
         if Command.RESET in commands:
             self._reset(estimate, settings, events, stop=stop, held=held)
 
-    def watch(self, estimate: Estimate, settings: Settings, events: list[Event], *, asked: bool) -> None:
-        """Every tick: stop where a motor angle is lost, the arm does not follow, hits something, or exceeds a limit of the robot.
+    def watch(self, estimate: Estimate, settings: Settings, events: list[Event], *, asked: bool, beyond: str) -> None:
+        """Every tick: REDUCED beyond an area that triggers it, and the stop of an arm that should not go on.
+
+        It is stopped where a motor angle is lost, it does not follow, hits something, or exceeds a limit of the robot.
 
         Args:
             estimate: of this tick.
             settings: as they are now.
             events: of this tick; more are added.
             asked: a program asked for contact.
+            beyond: name of the area that triggers REDUCED because a part of the arm is beyond it, "" for none.
         """
+        if beyond != self._beyond:
+            self._beyond = beyond
+            self._reduce(estimate.tick, settings, events)
         unseen = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"] if estimate.lost else []
         self._blind = self._blind + 1 if unseen else 0
         if self._blind == BLIND:
@@ -113,14 +121,23 @@ class SafetyInputs:
         elif Command.SAFEGUARD_CLOSED in commands and self._safeguard:
             self._safeguard = False
             events.append(Event(Kind.SAFEGUARD_CLOSED, tick))
-        limits = settings.robot_limits
         if Command.REDUCED_ON in commands:
-            if self._limits.switch(True, limits):
+            self._input = True
+        elif Command.REDUCED_OFF in commands:
+            self._input = False
+        self._reduce(tick, settings, events)
+
+    def _reduce(self, tick: int, settings: Settings, events: list[Event]) -> None:
+        """REDUCED while the input asks for it or a part is beyond an area that triggers it."""
+        robot, limits = self._robot, settings.robot_limits
+        if self._limits.switch(self._input or bool(self._beyond), limits):
+            if self._limits.reduced:
                 speeds = self._limits.reduced_limits(limits).speeds
-                values: Values = {"tcp": speeds.tcp, "elbow": speeds.elbow, "joint_speed": speeds.joint}
+                cause = "the input" if self._input else f"area {self._beyond}"
+                values: Values = {"cause": cause, "tcp": speeds.tcp, "elbow": speeds.elbow, "joint_speed": speeds.joint}
                 events.append(Event(Kind.REDUCED_ON, tick, values))
-        elif Command.REDUCED_OFF in commands and self._limits.switch(False, limits):
-            events.append(Event(Kind.REDUCED_OFF, tick))
+            else:
+                events.append(Event(Kind.REDUCED_OFF, tick))
         if robot.safety <= Safety.REDUCED:
             robot.safety = self._resting
 

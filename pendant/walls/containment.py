@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import msgspec
 from msgspec.structs import replace
@@ -22,6 +23,9 @@ PARTS = ("flange", "tcp", "elbow")
 
 TETHER = "tether"
 """Name of the wall that is always there: a sphere round the flange that follows the user, and nobody else (VW-4)."""
+
+BACK = 0.01
+"""A part is back from beyond an area that triggers REDUCED when it is so far inside [m]: at the border it switches once."""
 
 NOBODY = (ORIGIN, ORIGIN, False)
 """The user's and the payload-like force where nothing is known of them, and nobody is known to lead the arm."""
@@ -56,22 +60,32 @@ class WallState(msgspec.Struct, frozen=True, gc=False):
     force: Vector  # on the part [N]
 
 
+class Areas(NamedTuple):
+    """The workspace of some areas, and what it was made of."""
+
+    borders: tuple[AnyBorder, ...]
+    walls: WallSettings
+    space: Workspace | None  # None: there are none
+
+
 class Containment:
     """All walls of one robot, from the activation period to leaving. It does nothing while they are switched off."""
 
     __slots__ = (
         "R_FT",
+        "_beyond",
         "_enclosure",
         "_frames",
         "_measured",
         "_parts",
         "_points",
         "_reading",
+        "_triggers",
         "_turned",
         "_workspace",
         "borders",
     )
-    NOT_STATE = ("_workspace",)  # it is made of the borders and the settings alone
+    NOT_STATE = ("_triggers", "_workspace")  # they are made of the borders and the settings alone
 
     def __init__(self, borders: tuple[AnyBorder, ...], frames: Mapping[str, Pose]) -> None:
         """
@@ -88,7 +102,9 @@ class Containment:
         self._points: dict[str, WatchedPart] = {}  # where they were in the last step
         self._turned: tuple[str, ...] = ()  # parts that are references
         self._measured = False
-        self._workspace: tuple[tuple[AnyBorder, ...], WallSettings, Workspace | None] | None = None
+        self._beyond = ""  # name of the area that triggers REDUCED
+        self._workspace: Areas | None = None
+        self._triggers: Areas | None = None
 
     def workspace(self, walls: WallSettings) -> Workspace | None:
         """The areas that bind the arm's own motions, the same object until they change; None where there are none.
@@ -96,11 +112,28 @@ class Containment:
         A wall round a part is no part of it: free-drive anchors it, and a hand takes it along.
         """
         made = self._workspace
-        if made is None or made[0] is not self.borders or made[1] is not walls:
-            areas = [_switched(border, walls) for border in self.borders if border.on and walls.on]
-            held = tuple([area for area in areas if isinstance(area, Area)])
-            made = self._workspace = (self.borders, walls, Workspace(held, self._frames) if held else None)
-        return made[2]
+        if made is None or made.borders is not self.borders or made.walls is not walls:
+            made = self._workspace = self._areas(walls, [area for area in self.borders if isinstance(area, Area) and area.keeps])
+        return made.space
+
+    def beyond(self, estimate: Estimate, walls: WallSettings) -> str:
+        """Name of the area that triggers REDUCED because its part is beyond it, or cannot be placed; "" where none is (RL-7)."""
+        made = self._triggers
+        if made is None or made.borders is not self.borders or made.walls is not walls:
+            areas = [area for area in self.borders if isinstance(area, Area) and area.on and area.triggers_reduced]
+            made = self._triggers = self._areas(walls, areas)
+        before, self._beyond = self._beyond, ""
+        if made.space is not None:
+            for area, distance in zip(made.space.areas, made.space.distances(self._seen(estimate)), strict=True):
+                if not distance <= (-BACK if area.name == before else 0.0):
+                    self._beyond = area.name
+                    break
+        return self._beyond
+
+    def _areas(self, walls: WallSettings, areas: list[Area]) -> "Areas":
+        switched = [_switched(area, walls) for area in areas if walls.on]
+        held = tuple([area for area in switched if isinstance(area, Area)])
+        return Areas(self.borders, walls, Workspace(held, self._frames) if held else None)
 
     def reached(self, estimate: Estimate, walls: WallSettings) -> list[Event]:
         """The event of a motion that was stopped at a border, as `Estimate.move_wall` says."""
@@ -208,7 +241,7 @@ class Containment:
 
     def _build(self, walls: WallSettings) -> Enclosure | None:
         borders = self.borders if not walls.tether else (tether(walls), *self.borders)
-        borders = tuple([_switched(border, walls) for border in borders if border.on])
+        borders = tuple([_switched(border, walls) for border in borders if border.keeps])
         if not walls.on or not borders:
             return None
         self._parts = tuple(sorted({border.part for border in borders}))

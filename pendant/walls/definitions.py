@@ -107,6 +107,11 @@ class Border(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
         """Smallest factor of the size."""
         return 1.0 if self.size is None else self.size.least
 
+    @property
+    def keeps(self) -> bool:
+        """It keeps its part where it may be."""
+        return self.on
+
 
 class Wall(Border, tag="wall", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A shape round a part: the part stays inside. It is anchored where the part was, and anew as its policy says."""
@@ -140,6 +145,12 @@ class Area(Border, tag="area", frozen=True, forbid_unknown_fields=True, kw_only=
 
     position: tuple[Coordinate, Coordinate, Coordinate] = ORIGIN  # of the shape's centre in the reference [m]
     keep_out: bool = False  # the shape's inside is forbidden instead of its outside
+    triggers_reduced: bool = False  # beyond it the safety mode is REDUCED, and nothing keeps the part inside (RL-7)
+
+    @property
+    def keeps(self) -> bool:
+        """It keeps its part where it may be."""
+        return self.on and not self.triggers_reduced
 
 
 AnyBorder = Wall | Area

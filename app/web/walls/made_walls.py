@@ -32,6 +32,9 @@ SHAPES: dict[str, AnyShape] = {
 
 SIDES = {"Stay inside": False, "Keep out": True}
 REACTIONS = {"End free-drive": Reaction.LEAVE, "Stop there": Reaction.STAY, "Protective stop": Reaction.STOP}
+REDUCES = "Reduced mode beyond it"
+"""What an area can do instead (RL-7)."""
+
 PARTS = {"Tool": "tcp", "Flange": "flange", "Elbow": "elbow"}
 
 SIZES: dict[type[AnyShape], tuple[str, ...]] = {
@@ -154,7 +157,21 @@ def about(border: AnyBorder) -> str:
     if not border.on:
         return "off"
     side = word(SIDES, border.keep_out).lower() if isinstance(border, Area) else "round it"
+    if reaction(border) == REDUCES:
+        side = REDUCES.lower()
     return f"{word(PARTS, border.part)}: {side}"
+
+
+def reaction(border: AnyBorder) -> str:
+    """The word for what follows beyond a border."""
+    return REDUCES if isinstance(border, Area) and border.triggers_reduced else word(REACTIONS, border.reaction)
+
+
+def reacting(border: AnyBorder, wanted: str) -> AnyBorder:
+    """The border with what follows beyond it, by its word. A wall round a part cannot trigger REDUCED, and stays as it is."""
+    if isinstance(border, Area):
+        border = replace(border, triggers_reduced=wanted == REDUCES)
+    return replace(border, reaction=REACTIONS.get(wanted, border.reaction))
 
 
 def listed(borders: Sequence[AnyBorder], on: bool) -> str:

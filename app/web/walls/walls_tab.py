@@ -13,6 +13,7 @@ from app.web.walls.made_walls import (
     LONGEST,
     PARTS,
     REACTIONS,
+    REDUCES,
     SHAPES,
     SHORTEST,
     SIDES,
@@ -21,6 +22,8 @@ from app.web.walls.made_walls import (
     listed,
     made,
     moved,
+    reacting,
+    reaction,
     sized,
     sizes,
     tool_now,
@@ -67,7 +70,7 @@ class WallsTab:
         self.on = gui.add_checkbox("On", True)
         self.side = gui.add_dropdown("Limit", tuple(SIDES))
         self.part = gui.add_dropdown("Watched", tuple(PARTS), hint="The point of the arm that the limit is for")
-        self.reaction = gui.add_dropdown("When reached", tuple(REACTIONS))
+        self.reaction = gui.add_dropdown("When reached", (*REACTIONS, REDUCES))
         self.size = [gui.add_number("Radius [mm]", SHORTEST, min=SHORTEST, max=LONGEST, step=1.0) for _ in range(3)]
         self.spot = [
             gui.add_number(f"{axis} [mm]", 0.0, min=-FARTHEST, max=FARTHEST, step=1.0, hint="Of its centre, in the base")
@@ -172,7 +175,7 @@ class WallsTab:
             return
         _bring(self.on, border.on)
         _bring(self.part, word(PARTS, border.part))
-        _bring(self.reaction, word(REACTIONS, border.reaction))
+        _bring(self.reaction, reaction(border))
         if area is not None:
             _bring(self.side, word(SIDES, area.keep_out))
             for control, value in zip(self.spot, self._spot(area), strict=True):
@@ -254,7 +257,7 @@ class WallsTab:
 
         by_hand(self.on, lambda border: replace(border, on=self.on.value))
         by_hand(self.part, lambda border: replace(border, part=PARTS[self.part.value]))
-        by_hand(self.reaction, lambda border: replace(border, reaction=REACTIONS[self.reaction.value]))
+        by_hand(self.reaction, lambda border: reacting(border, self.reaction.value))
         by_hand(self.side, self._sided)
         for control in self.size:
             by_hand(control, self._sized)

@@ -92,7 +92,9 @@ def test_the_range_of_a_joint_is_what_both_leave_of_its_own() -> None:
 def test_the_input_is_a_safety_mode_with_limits() -> None:
     bench = reduced_bench()
     assert (bench.last.safety, bench.last.speed_limits) == (Safety.REDUCED, REDUCED)
-    assert bench.events == [Event(Kind.REDUCED_ON, bench.tick, {"tcp": 0.75, "elbow": 0.75, "joint_speed": 6.4832})]
+    assert bench.events == [
+        Event(Kind.REDUCED_ON, bench.tick, {"cause": "the input", "tcp": 0.75, "elbow": 0.75, "joint_speed": 6.4832})
+    ]
     assert bench.step(ON).events == ()
     bench.step(OFF)
     assert (bench.last.safety, bench.last.speed_limits) == (Safety.NORMAL, NORMAL)

@@ -1,12 +1,20 @@
-"""The workspace: which areas bind the arm's own motions, how far off they are, how far out a motion may lead (VW-9, VW-10)."""
+"""The workspace: which areas bind the arm's own motions, how far off they are, how far out a motion may lead (VW-9, VW-10).
+
+And the areas beyond which the safety mode is REDUCED (RL-7).
+"""
 
 import math
 
+import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Event, Kind
+from pendant.inputs import NOTHING, Command, Inputs
+from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Safety
 from pendant.tick.pose import HERE, Pose, from_rpy
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import Area, Dependence, Measure, Wall
@@ -207,3 +215,45 @@ def test_a_tool_that_is_turned_in_the_flange_turns_what_moves_with_it() -> None:
     containment.R_FT = from_rpy(math.pi / 2, 0.0, 0.0)
     (turned,) = containment.reached(value, SETTINGS.walls)
     assert turned.values["distance"] == pytest.approx(100.0)  # in the box, so far from its nearest side
+
+
+CLOSE = Area(name="close", part="tcp", shape=HalfSpace(normal=(1.0, 0.0, 0.0)), position=(0.5, 0.0, 0.0), triggers_reduced=True)
+
+
+def at(x: float) -> Estimate:
+    """The tool is there along x of B."""
+    value = estimate()
+    value.tcp = np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0])
+    return value
+
+
+def test_an_area_that_triggers_reduced_holds_nothing_and_tells_when_its_part_is_beyond() -> None:
+    walls = Containment((CLOSE, FLOOR), {})
+    space = walls.workspace(SETTINGS.walls)
+    assert space is not None
+    assert [area.name for area in space.areas] == ["floor"]
+    places = (0.499, 0.501, 0.499, 0.491, 0.489, 0.499)
+    assert [walls.beyond(at(x), SETTINGS.walls) for x in places] == ["", "close", "close", "close", "", ""]
+    assert walls.beyond(at(math.nan), SETTINGS.walls) == "close"
+    assert walls.beyond(at(0.6), apply(SETTINGS, {"walls.on": False}).walls) == ""
+    walls.change((FLOOR,), "", 0)
+    assert walls.beyond(at(0.6), SETTINGS.walls) == ""
+    walls.change((replace(CLOSE, on=False),), "", 0)
+    assert walls.beyond(at(0.6), SETTINGS.walls) == ""
+
+
+def test_the_robot_is_reduced_beyond_it_and_as_long_as_either_asks_for_it() -> None:
+    supervisor = Supervisor(SETTINGS, 6, borders=(CLOSE,))
+    modes, told = [], []
+    on, off = Inputs(commands=(Command.REDUCED_ON,)), Inputs(commands=(Command.REDUCED_OFF,))
+    for tick, (x, inputs) in enumerate(
+        [(0.4, NOTHING), (0.6, NOTHING), (0.6, on), (0.4, NOTHING), (0.6, NOTHING), (0.6, off), (0.4, NOTHING)]
+    ):
+        value = at(x)
+        value.tick = tick
+        decision = supervisor.step(value, inputs)
+        modes.append(decision.safety)
+        told += [(event.kind, event.values.get("cause")) for event in decision.events]
+    normal, reduced = Safety.NORMAL, Safety.REDUCED
+    assert modes == [normal, reduced, reduced, reduced, reduced, reduced, normal]
+    assert told == [(Kind.REDUCED_ON, "area close"), (Kind.REDUCED_OFF, None)]

@@ -7,7 +7,7 @@ import pytest
 from msgspec.structs import replace
 
 from app.web.server import Served
-from app.web.walls.made_walls import REACTIONS
+from app.web.walls.made_walls import REACTIONS, REDUCES
 from app.web.walls.wall_handles import NAME
 from app.web.walls.walls_tab import NONE
 from pendant.all_settings import apply
@@ -71,6 +71,7 @@ CHANGES: list[tuple[str, Any, AnyBorder]] = [
     ("side", "Keep out", replace(BALL, keep_out=True)),
     ("part", "Elbow", replace(BALL, part="elbow")),
     ("reaction", list(REACTIONS)[1], replace(BALL, reaction=Reaction.STAY)),
+    ("reaction", REDUCES, replace(BALL, triggers_reduced=True)),
     ("size", 150.0, replace(BALL, shape=Sphere(radius=0.15))),
     ("spot", -250.0, replace(BALL, position=(-0.25, 0.0, 0.3))),
 ]
