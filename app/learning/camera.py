@@ -14,7 +14,7 @@ from app.files.bad_input import ABSENT, BadInput
 from app.files.library import mesh_path
 from sim.arm.arm_file import Arm
 from sim.arm.frames import joint_frames, rotation_from_rpy
-from sim.arm.scenario import AnyObject, Pad, Plane, Scenario, SnapFit, TwoFrictions
+from sim.arm.scenario import AnyObject, FreeCylinder, Pad, Plane, Scenario, SnapFit, TwoFrictions
 from sim.exchange.snapshot import Snapshot
 
 Array = NDArray[np.float64]
@@ -192,8 +192,12 @@ def _model(arm: Arm, scenario: Scenario, height: int, width: int) -> mujoco.MjMo
     for thing in scenario.world:
         if not _is_floor(thing):
             body = spec.worldbody.add_body(name=f"object/{thing.name}", mocap=True)
-            size = [1.5, 1.5, 0.001] if isinstance(thing, Plane) else [side / 2.0 for side in thing.size]
-            body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=size, rgba=WORLD.get(type(thing), GREY))
+            kind, size = mujoco.mjtGeom.mjGEOM_BOX, [1.5, 1.5, 0.001]
+            if isinstance(thing, FreeCylinder):
+                kind, size = mujoco.mjtGeom.mjGEOM_CYLINDER, [thing.radius, thing.height / 2.0, 0.0]
+            elif not isinstance(thing, Plane):
+                size = [side / 2.0 for side in thing.size]
+            body.add_geom(type=kind, size=size, rgba=WORLD.get(type(thing), GREY))
     return spec.compile()
 
 

@@ -35,6 +35,7 @@ COLOUR = record(r=NUMBER, g=NUMBER, b=NUMBER, a=NUMBER)
 POSE = record(position=VECTOR, orientation=QUATERNION)
 _ARROW = record(pose=POSE, shaft_length=NUMBER, shaft_diameter=NUMBER, head_length=NUMBER, head_diameter=NUMBER, color=COLOUR)
 _SHAPE = record(pose=POSE, size=VECTOR, color=COLOUR)
+_CYLINDER = record(pose=POSE, size=VECTOR, bottom_scale=NUMBER, top_scale=NUMBER, color=COLOUR)
 _MODEL = record(
     pose=POSE,
     scale=VECTOR,
@@ -54,6 +55,7 @@ _ENTITY = record(
     arrows=several(_ARROW),
     cubes=several(_SHAPE),
     spheres=several(_SHAPE),
+    cylinders=several(_CYLINDER),
     models=several(_MODEL),
 )
 _TRANSFORM = record(timestamp=TIME, parent_frame_id=TEXT, child_frame_id=TEXT, translation=VECTOR, rotation=QUATERNION)
@@ -105,7 +107,7 @@ def transforms(tick: int, frames: Iterable[tuple[str, Sequence[float]]]) -> Json
 
 def entity(tick: int, ident: str, frame: str, **content: Any) -> Json:
     """A SceneEntity that stays until the next of its name."""
-    lists: Json = {"metadata": [], "arrows": [], "cubes": [], "spheres": [], "models": []}
+    lists: Json = {"metadata": [], "arrows": [], "cubes": [], "spheres": [], "cylinders": [], "models": []}
     head = {"timestamp": moment(tick), "frame_id": frame, "id": ident, "lifetime": {"sec": 0, "nsec": 0}, "frame_locked": True}
     return {**head, **lists, **content}
 
@@ -131,6 +133,11 @@ def model(data: bytes) -> Json:
 def box(size: Sequence[float]) -> Json:
     """A CubePrimitive with full lengths [m]."""
     return {"pose": NOWHERE, "size": dict(zip("xyz", size, strict=True)), "color": WORLD_COLOUR}
+
+
+def cylinder(size: Sequence[float]) -> Json:
+    """A CylinderPrimitive along z, by the full lengths of the box around it [m]."""
+    return {**box(size), "bottom_scale": 1.0, "top_scale": 1.0}
 
 
 def ball(radius: float) -> Json:

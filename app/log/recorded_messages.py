@@ -36,6 +36,20 @@ class PeriodMessage(msgspec.Struct, frozen=True, kw_only=True):
     total: Tick
 
 
+class GripperMessage(msgspec.Struct, frozen=True, kw_only=True):
+    """The gripper as its own electronics tell; see `sim.gripping.finger_drive.GripperState`."""
+
+    closing: bool
+    moving: bool
+    held: str
+    met: bool
+    opening: float  # [m]
+    wanted: float  # [m]
+    stroke: float  # [m]
+    force: float  # [N]
+    taken: float
+
+
 class PendantMessage(msgspec.Struct, frozen=True, kw_only=True):
     """/pendant, 60 times a second."""
 
@@ -46,6 +60,7 @@ class PendantMessage(msgspec.Struct, frozen=True, kw_only=True):
     periods: list[PeriodMessage]
     touches: list[TouchMessage]
     user: UserMessage | None = None  # recordings lack it that were made before it came
+    gripper: GripperMessage | None = None  # of the tool that is mounted; recordings lack it that were made before it came
 
 
 class Position(msgspec.Struct, frozen=True):

@@ -155,8 +155,9 @@ class Recorder:
     def _draw(self, simulation: Simulation, decision: Decision, tick: int) -> None:
         plant = simulation.plant
         user = told_force(simulation.arm, simulation.estimate, decision)
+        gripper = None if simulation.gripper is None else simulation.gripper.state
         poses = (plant.poses(), plant.object_poses(), plant.payload.pose())
-        self._pictures.append(Picture(tick, decision, *poses, plant.payload.load.mass, plant.hands.touched, user))
+        self._pictures.append(Picture(tick, decision, *poses, plant.payload.load.mass, plant.hands.touched, user, gripper))
 
     def note(self, event: Event) -> None:
         """Record what no tick told, as of the last tick seen."""

@@ -20,7 +20,8 @@ from pendant.decision import Decision
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event
 from pendant.guided.force_covariance import UncertainForce
-from sim.arm.scenario import Plane, Scenario
+from sim.arm.scenario import FreeCylinder, Plane, Scenario
+from sim.gripping.finger_drive import GripperState
 from sim.simulation import Simulation
 
 PICTURES, TOLD = "pictures", "told"
@@ -38,6 +39,7 @@ class Picture(NamedTuple):
     payload_mass: float  # [kg]
     touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
     user: UncertainForce | None  # what free-drive takes for the user's force
+    gripper: GripperState | None  # None: the tool has none
 
 
 class TickRows(NamedTuple):
@@ -164,6 +166,7 @@ class Writer:
                 {"part": part, "point": point, "force": force, "torque": torque} for part, point, force, torque in picture.touches
             ],
             "user": None if user is None else {"force": user.force, "covariance": _rows(user.covariance), "at": user.at},
+            "gripper": None if picture.gripper is None else picture.gripper._asdict(),
         }
         self._say("/pendant", tick, content)
 
@@ -222,6 +225,9 @@ class Writer:
                 continue
             entities.append(foxglove.entity(0, f"link {part}", part, models=[foxglove.model(data)]))
         for name, thing in zip(self._objects, scenario.world, strict=True):
+            if isinstance(thing, FreeCylinder):
+                entities.append(foxglove.entity(0, name, name, cylinders=[foxglove.cylinder(thing.size)]))
+                continue
             size = [3.0, 3.0, 0.002] if isinstance(thing, Plane) else thing.size
             entities.append(foxglove.entity(0, name, name, cubes=[foxglove.box(size)]))
         return entities

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from app.files.checked import ABSENT, BadInput
@@ -18,6 +19,7 @@ from pendant.guided.pull import NOT_TOLD, HandFelt, PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
 from sim.exchange.snapshot import Snapshot
+from sim.gripping.finger_drive import GripperState
 
 
 @dataclass(slots=True)
@@ -135,4 +137,5 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         truth_touched=bool(truth["touched"] > 0.0),
         pull=pull,
         user=user_at(said),
+        gripper=None if said.gripper is None else GripperState(**msgspec.structs.asdict(said.gripper)),
     )

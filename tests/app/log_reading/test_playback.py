@@ -38,15 +38,18 @@ SESSION: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory: pytest.TempPathFactory) -> tuple[Log, dict[int, Snapshot]]:
+    return play(SESSION, tmp_path_factory.mktemp("played") / "log.mcap", 500)
+
+
+def play(content: dict[str, Any], path: Path, ticks: int) -> tuple[Log, dict[int, Snapshot]]:
     """A log, and every snapshot of its run."""
-    session = convert(SESSION, Session, "s.yaml")
+    session = convert(content, Session, "s.yaml")
     prepared = prepare(session, "s.yaml")
     simulation = simulate(prepared)
     timeline = Timeline(session.timeline, prepared.arm.chain.joints)
-    path = tmp_path_factory.mktemp("played") / "log.mcap"
     seen: dict[int, Snapshot] = {}
     with Recorder(path, simulation, "played") as recorder:
-        for tick in range(1, 501):
+        for tick in range(1, ticks + 1):
             decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
             timeline.see(tick, decision)
             recorder.see(simulation, decision)
@@ -104,6 +107,25 @@ def test_a_snapshot_comes_back_as_it_was(played: tuple[Log, dict[int, Snapshot]]
         else:
             assert found.user is was.user is None
     assert any(each.touches for each in log.pictures)
+
+
+GRIPPED: dict[str, Any] = {
+    "title": "gripped",
+    "duration": 1.0,
+    "tool": "two-finger",
+    "world": [
+        {"kind": "free-cylinder", "name": "can", "position": [-0.9, 0.3, 0.05], "radius": 0.03, "height": 0.1, "mass": 0.5}
+    ],
+    "timeline": [{"at": 0.02, "do": "gripper", "command": "close", "force": 40.0}],
+}
+
+
+def test_the_gripper_comes_back_with_its_fingers_where_they_were(tmp_path: Path) -> None:
+    log, seen = play(GRIPPED, tmp_path / "log.mcap", 200)
+    found = [snapshot_at(log, picture, 8 * picture).gripper for picture in range(len(log.pictures))]
+    assert found == [seen[8 * picture + 1].gripper for picture in range(len(log.pictures))]
+    openings = [each.opening for each in found if each is not None]
+    assert openings[-1] < openings[0]
 
 
 def test_a_recording_from_before_the_users_force_came_has_none(played: tuple[Log, dict[int, Snapshot]]) -> None:
