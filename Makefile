@@ -5,13 +5,13 @@
 #   make test ROOM=pendant/walls   one room in some seconds: lint, its tests, what rooms may use
 #   make e2e-full    every browser test at every size of the window; make test has one size of what is the same at all
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base;
-#                    their results are in out/bench, and python -m tools.results makes docs/results of them
+#                    their results are in out/bench; python -m tools.results out/bench takes them over into docs/results
 #   make races       page, scripts, network, recorder and laboratory against each other, threads changed every 20 us, for ten minutes;
 #                    make races-full: for an hour
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
 #   make claims      every claim with its switch and its mutants, into out/claims; 25 minutes at most on two cores
-#   make docs        the pages that programs write; those that are too long to keep are in out/docs
+#   make docs        the pages that programs write, into out/docs; docs/results/README.md
 #   make fuzz        files and messages drawn from their types, and damaged ones, for an hour on all cores (tools/fuzz)
 #   make clean       remove what the above made
 
@@ -163,7 +163,7 @@ claims: $(VENV)/dev.stamp kernels
 	$(BIN)/pendant claims --mutants --out out/claims
 
 docs: $(VENV)/dev.stamp
-	@for page in modules reactions traceability claims_page; do $(BIN)/python -m tools.$$page || exit 1; done
+	@for page in modules reactions traceability claims_page results; do $(BIN)/python -m tools.$$page || exit 1; done
 
 fuzz: $(VENV)/dev.stamp
 	$(BIN)/python -m tools.fuzz --seconds 3600 --seed $(SEED)

@@ -3,7 +3,9 @@
 import ast
 import inspect
 import math
+import os
 import re
+import subprocess
 import textwrap
 from collections.abc import Callable
 from functools import cache
@@ -29,7 +31,7 @@ from pendant.tick.source_signal import Signal
 from pendant.walls import shapes, solids
 from tests.pendant.contacts import limit
 from tests.pendant.estimates import estimate
-from tools import modules
+from tools import claims_page, missed, modules, reactions, results, traceability
 
 ROOT = Path(__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
@@ -323,8 +325,40 @@ def test_the_architecture_has_every_room_and_every_module_above_them() -> None:
     assert sorted(name for name in wanted if f"`{name}`" not in text) == []
 
 
-def test_the_list_of_modules_is_up_to_date() -> None:
-    assert modules.PAGE.read_text(encoding="utf-8") == modules.page(), "run python -m tools.modules"
+def test_the_text_of_docs_in_git_is_short() -> None:
+    """What programs print is built: pages are for people, and summaries have a row a claim or a bar."""
+    tracked = subprocess.run(
+        ["git", "ls-files", "docs"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    sizes = {name: (ROOT / name).stat().st_size for name in tracked if (ROOT / name).is_file() and not name.endswith(".webp")}
+    assert sum(sizes.values()) <= 400_000
+    assert sum(size for name, size in sizes.items() if not name.endswith(".md")) <= 60_000
+
+
+def test_the_changelog_is_a_line_a_change() -> None:
+    lines = (ROOT / "CHANGELOG.md").read_text().splitlines()
+    assert sum(len(line.encode()) + 1 for line in lines) <= 8_000
+    versions = [line for line in lines if line.startswith("## ")]
+    assert [bool(re.fullmatch(r"## \[\d+\.\d+\.\d+\]( - .+)?", line)) for line in versions] == [True] * len(versions)
+    changes = lines[lines.index(versions[0]) :]
+    assert [each for each in changes if each and not re.match(r"## |- (Added|Changed|Fixed|Removed): [A-Z*`].*\.$", each)] == []
+    assert len(set(changes) - {""}) == sum(map(bool, changes))
+
+
+def test_the_links_of_pages_that_are_built_lead_somewhere() -> None:
+    """`make docs` writes them into out/docs."""
+    found = results.read_summary(results.PAGES / "bars.json")
+    claims = claims_page.page(claims_page.expected(), claims_page.read_seen())
+    pages = [modules.page(), traceability.page(), reactions.page(), claims, results.page(found), missed.history([], {})]
+    links = [link for page in pages for link in re.findall(r"\]\(([^)#:]+)\)", page)]
+    assert len(links) > 500
+    assert [link for link in links if not Path(os.path.normpath(ROOT / "out" / "docs" / link)).exists()] == []
+
+
+def test_the_list_of_modules_has_each_module_once() -> None:
+    listed = re.findall(r"^- \[\w+\]\(\.\./\.\./(.+?)\)", modules.page(), re.MULTILINE)
+    there = [path for top in modules.TOPS for path in (ROOT / top).rglob("*.py") if path.stem != "__init__"]
+    assert sorted(listed) == sorted(path.relative_to(ROOT).as_posix() for path in there)
 
 
 def test_a_module_that_says_nothing_of_itself_is_named(tmp_path: Path) -> None:

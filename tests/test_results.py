@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from benchmarks.common import Options, Report, bound, code_digest
+from benchmarks.common import Options, Report, bound
 from tests.test_benchmarks import BENCHES
 from tools import reliability, results
 
@@ -47,12 +47,12 @@ def finish(report: Report, digest: str) -> None:
 
 def lines(folder: Path, digest: str = NEW) -> list[str]:
     """The rows of all tables of the page."""
-    found = [line for line in results.page(results.read(folder), digest).splitlines() if line.startswith("| ")]
+    found = [line for line in results.page(results.summary(results.read(folder), digest)).splitlines() if line.startswith("| ")]
     return [line for line in found if not line.startswith("| figure |")]
 
 
 def make(folder: Path, out: Path, *more: str) -> int:
-    return results.main(["--results", str(folder), "--out", str(out), *more])
+    return results.main([str(folder), "--out", str(out), "--built", str(out), *more])
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:
@@ -69,7 +69,7 @@ def test_the_worst_base_stands_for_all_and_its_cases_are_counted_together(tmp_pa
         "| drift | mm | 21 | <= 0.2 | 0.25 | 2000 |  | **no** |",
         "| ended |  |  | <= 0 | 0 | 1000 |  | yes |",
     ]
-    page = results.page(results.read(tmp_path), NEW)
+    page = results.page(results.summary(results.read(tmp_path), NEW))
     assert f"Code `{NEW}`, commit c0ffee1, settings " in page
     assert f"Of {len(BENCHES) + 2} benches 2 were measured. Of 3 bars: 2 held at every base, 1 missed." in page
     assert "## contact, quick size\n\nSeed bases 1000.\n" in page
@@ -95,7 +95,7 @@ def test_a_share_is_bounded_by_the_cases_of_all_bases(tmp_path: Path) -> None:
         "| named |  | 0 | >= 1 | no case | 1 |  | no case |",
         f"| found |  | 3 | >= 0.5 | 0.6667 | 2 | {bound(2, 3, upper=False):.4g} | yes |",
     ]
-    assert "Of 3 bars: 2 held at every base, 1 without a case." in results.page(results.read(tmp_path), NEW)
+    assert "Of 3 bars: 2 held at every base, 1 without a case." in results.page(results.summary(results.read(tmp_path), NEW))
 
 
 @pytest.mark.parametrize(("value", "told"), [("none came to rest", "none came to rest"), (float("nan"), "nan")])
@@ -111,11 +111,11 @@ def test_a_page_is_of_one_code_the_newest_or_the_one_asked_for(tmp_path: Path) -
     bench(folder, "drop", 1, ("rise", 5.0, "mm", 20.0, 3), digest=OLD)
     bench(folder, "hold", 2, ("drift", 0.15, "mm", 0.2, 3))
     assert make(folder, out) == 0
-    assert (out / "README.md").read_text() == results.page(results.read(folder), NEW)
+    assert (out / "results.md").read_text() == results.page(results.summary(results.read(folder), NEW))
     assert [(row["bench"], row["seed"], row["digest"]) for row in rows_of(out / "results.csv")] == [("hold", "2", NEW)]
     assert make(folder, out, "--digest", OLD) == 0
     assert [line.split(" | ")[4] for line in lines(folder, OLD)] == ["5", "0.1"]
-    assert (out / "README.md").read_text() == results.page(results.read(folder), OLD)
+    assert (out / "results.md").read_text() == results.page(results.summary(results.read(folder), OLD))
     assert [(row["bench"], row["digest"]) for row in rows_of(out / "results.csv")] == [("drop", OLD), ("hold", OLD)]
 
 
@@ -166,11 +166,51 @@ def test_results_from_before_there_was_a_digest_are_left_out_in_one_line(
 
 
 def test_with_no_results_every_bench_is_listed_as_not_measured(tmp_path: Path) -> None:
-    assert make(tmp_path / "none", tmp_path) == 0
-    page = (tmp_path / "README.md").read_text()
-    assert f"Code `{code_digest()}`.\nAll misses" in page
-    assert page.rpartition("\n\n")[2] == ", ".join(sorted([*BENCHES, "races", "soak"])) + ".\n"
-    assert "|" not in page
+    assert results.main(["--out", str(tmp_path), "--built", str(tmp_path)]) == 0
+    for name in ("README.md", "results.md"):
+        page = (tmp_path / name).read_text()
+        assert "\nNothing was measured.\n" in page
+        assert page.rpartition("\n\n")[2] == ", ".join(sorted([*BENCHES, "races", "soak"])) + ".\n"
+        assert "|" not in page
+
+
+def test_a_folder_without_results_takes_nothing_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder, out = tmp_path / "bench", tmp_path / "out"
+    bench(folder, "hold", 1, ("drift", 0.1, "mm", 0.2, 3))
+    assert make(folder, out) == 0
+    kept = (out / "bars.json").read_bytes()
+    assert make(tmp_path / "none", out) == 2
+    assert capsys.readouterr().err.endswith("none: no bench has written a result there\n")
+    assert (out / "bars.json").read_bytes() == kept
+
+
+def test_the_first_page_has_what_a_reader_wants_and_each_missed_bar(tmp_path: Path) -> None:
+    figure = "way while nobody holds the arm, largest"
+    bench(tmp_path, "guided", 1, (figure, 0.5, "mm", 30.0, 3), ("other", 2.0, "mm", 30.0, 3))
+    bench(tmp_path, "guided", 2, (figure, 40.0, "mm", 30.0, 3), ("other", 1.0, "mm", 30.0, 3))
+    page = results.brief(results.summary(results.read(tmp_path), NEW))
+    assert "| Displacement while nobody holds a freed arm | 40 mm | <= 30 | 6 |  | `guided`, full |" in page
+    assert "| Drift in 10 s without a hand | not measured |  |  |  | `free_drive_forces` |" in page
+    assert f"| `guided`, full | {figure} | 40 mm | <= 30 | 6 | 2 |" in page
+    assert "| `guided`, full | 1, 2 | 1 | 1 | 0 |" in page
+    assert "| other |" not in page
+
+
+def test_the_summary_is_read_as_it_was_written(tmp_path: Path) -> None:
+    bench(tmp_path, "hold", 1, ('drift, "α|β"', 0.1, "N·m", 0.2, 3), ("drift", float("nan"), "mm", 0.2, None))
+    found = results.summary(results.read(tmp_path), NEW)
+    results.write_summary(found, tmp_path / "bars.json")
+    assert results.read_summary(tmp_path / "bars.json") == found
+    assert sum(line.startswith("[") for line in (tmp_path / "bars.json").read_text().splitlines()) == 2
+
+
+def test_every_figure_that_a_reader_wants_is_one_of_its_bench() -> None:
+    measured = {
+        (each.bench, bar.figure) for each in results.read_summary(results.PAGES / "bars.json").benches for bar in each.bars
+    }
+    there = {bench for bench, _ in measured}
+    assert {bench for bench, _ in results.WANTED.values()} <= set(results.benches())
+    assert [wanted for wanted in results.WANTED.values() if wanted[0] in there and wanted not in measured] == []
 
 
 WRITTEN = {"bench": "a", "size": "full", "seed": 1, "settings": "s", "digest": NEW}
@@ -187,6 +227,8 @@ WRITTEN = {"bench": "a", "size": "full", "seed": 1, "settings": "s", "digest": N
             json.dumps({**WRITTEN, "commit": "c", "rows": [{"what": "w"}]}),
             "x.json: rows[0]: expected at_least, at",
         ),
+        ("out/bars.json", "{", "bars.json: expected digest, of and benches"),
+        ("out/bars.json", '{"digest": "a"}', "bars.json: expected digest, of and benches"),
         ("out/history.csv", "", "history.csv: expected the columns digest, commit"),
         ("out/history.csv", "digest,commit,bench,size,seed,figure,value,bar\na,b\n", "history.csv: expected the columns"),
         ("out/led_to.yaml", "- a\n", "led_to.yaml: expected a text for each"),
@@ -200,7 +242,8 @@ def test_what_is_not_as_it_should_be_is_one_clear_line(
     for folder in ("bench", "out"):
         (tmp_path / folder).mkdir()
     (tmp_path / name).write_text(content)
-    assert make(tmp_path / "bench", tmp_path / "out") == 2
+    folders = [str(tmp_path / "bench")] if name.startswith("bench") else []
+    assert results.main([*folders, "--out", str(tmp_path / "out"), "--built", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err
     assert why in said
     assert said.count("\n") == 1
@@ -211,8 +254,7 @@ def test_the_history_of_the_project_is_as_its_files_say_and_lost_no_row(tmp_path
     path = results.PAGES / "history.csv"
     copy = shutil.copy(path, tmp_path)
     known = results.remember([], Path(copy))
-    led_to = results.followed(results.PAGES / "led_to.yaml", known)
-    assert (results.PAGES / "history.md").read_text() == results.history(known, led_to), "run python -m tools.results"
+    assert results.followed(results.PAGES / "led_to.yaml", known)
     assert len({miss.key() for miss in known}) == len(known)
 
     def git(*arguments: str) -> str:
@@ -224,11 +266,9 @@ def test_the_history_of_the_project_is_as_its_files_say_and_lost_no_row(tmp_path
         assert set(git("show", f"{commit}:{name}").splitlines()) <= now, f"rows of {commit} are lost"
 
 
-def test_the_committed_page_is_of_one_code() -> None:
-    digests = {row["digest"] for row in rows_of(results.PAGES / "results.csv")}
-    page = (results.PAGES / "README.md").read_text()
-    assert all(f"Code `{digest}`" in page for digest in digests)
-    assert len(digests) <= 1
+def test_the_committed_page_is_of_its_summary() -> None:
+    found = results.read_summary(results.PAGES / "bars.json")
+    assert (results.PAGES / "README.md").read_text() == results.brief(found), "run python -m tools.results"
 
 
 def test_how_often_what_is_told_is_true_is_a_curve_over_all_bases(tmp_path: Path) -> None:

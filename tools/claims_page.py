@@ -1,6 +1,7 @@
-"""Writes docs/reference/claims.md, a row a claim, and out/docs/claims.md, with all that was expected and seen.
+"""Writes out/docs/claims.md: a row a claim, then all that was expected and seen.
 
-Run: `python -m tools.claims_page`. Given the claims.json that `make claims` wrote last, it takes over first what that run showed.
+Run: `python -m tools.claims_page`. Given the claims.json that `make claims` wrote last, it takes over first what that run showed,
+into docs/results/claims.csv.
 """
 
 import csv
@@ -20,22 +21,22 @@ from app.session.prepare import prepare
 from app.session.session_file import Session
 
 ROOT = Path(__file__).parents[1]
-PAGE, SHOWN = ROOT / "docs/reference/claims.md", ROOT / "docs/results/claims.csv"
-LONG, RUN = ROOT / "out/docs/claims.md", ROOT / "out/claims/claims.json"
+PAGE, SHOWN, RUN = ROOT / "out/docs/claims.md", ROOT / "docs/results/claims.csv", ROOT / "out/claims/claims.json"
 
 HEAD = """# Claims
 
-Written by `python -m tools.claims_page` from the sessions, the mutants and [claims.csv](../results/claims.csv). A claim is
-shown where its session (`assets/sessions/`) meets what it expects, and does not with its switch off, nor with any of its
-mutants: the smallest changes of code that take away what the claim says (`assets/mutants/`). `yes`: the last `make claims`
-saw all of that. `not run`: seed, expectations or mutants are newer than it. `make docs` writes the long page,
-`out/docs/claims.md`: what each session expects, each mutant, and what was seen.
+Written by `python -m tools.claims_page` from the sessions, the mutants and [claims.csv](../../docs/results/claims.csv). A
+claim is shown where its session (`assets/sessions/`) meets what it expects, and does not with its switch off, nor with any of
+its mutants: the smallest changes of code that take away what the claim says (`assets/mutants/`). `yes`: the last `make claims`
+saw all of that. `not run`: seed, expectations or mutants are newer than it. The second table has what each session expects,
+each mutant, and what was seen.
 
 | claim | to show | ids | sessions: seed, mutants, shown |
 |---|---|---|---|
 """
 
-LONG_HEAD = """# Claims, with all that is expected and was seen
+LONG_HEAD = """
+## All that is expected and was seen
 
 | claim | session | switch | it expects | mutants, and what was seen | shown |
 |---|---|---|---|---|---|
@@ -140,7 +141,7 @@ def shown(each: Expected, seen: Seen | None) -> str:
 
 
 def page(wanted: list[Expected], seen: dict[tuple[str, str], Seen]) -> str:
-    """The page of the claims, a row each."""
+    """The claims, a row each."""
     lines: list[str] = []
     for claim in CLAIMS.values():
         own = [each for each in wanted if each.claim == claim.name]
@@ -152,8 +153,8 @@ def page(wanted: list[Expected], seen: dict[tuple[str, str], Seen]) -> str:
     return HEAD + "\n".join(lines) + "\n"
 
 
-def long_page(wanted: list[Expected], seen: dict[tuple[str, str], Seen], rows: Iterable[Row]) -> str:
-    """The page with all that is expected and was seen; `rows` are of the run that is at hand, maybe none."""
+def details(wanted: list[Expected], seen: dict[tuple[str, str], Seen], rows: Iterable[Row]) -> str:
+    """All that is expected and was seen; `rows` are of the run that is at hand, maybe none."""
     run = {(row["name"], row["session"]): row for row in rows}
     lines: list[str] = []
     for each in wanted:
@@ -175,15 +176,14 @@ def _line(cells: list[str]) -> str:
 
 
 def main(arguments: list[str]) -> None:
-    """Write both pages, and claims.csv where a run is given."""
+    """Write the page, and claims.csv where a run is given."""
     run = Path(arguments[0]) if arguments else RUN
     rows: list[Row] = msgspec.json.decode(run.read_bytes()) if arguments or run.exists() else []
     if arguments:
         write_seen(seen_in(rows))
     wanted, seen = expected(), read_seen()
-    PAGE.write_text(page(wanted, seen), encoding="utf-8")
-    LONG.parent.mkdir(parents=True, exist_ok=True)
-    LONG.write_text(long_page(wanted, seen, rows), encoding="utf-8")
+    PAGE.parent.mkdir(parents=True, exist_ok=True)
+    PAGE.write_text(page(wanted, seen) + details(wanted, seen, rows), encoding="utf-8")
 
 
 if __name__ == "__main__":

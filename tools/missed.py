@@ -1,4 +1,4 @@
-"""The history of missed bars, to which it only adds: docs/results/history.csv and history.md. `tools.results` writes them."""
+"""The history of missed bars, to which it only adds: docs/results/history.csv, and its page. `tools.results` writes them."""
 
 import csv
 from collections.abc import Iterable
@@ -11,7 +11,8 @@ HISTORY = """\
 # History
 
 Every bar that was ever missed at a seed base, with the code that missed it and what the miss led to. `python -m tools.results`
-writes it from [history.csv](history.csv), to which it only adds, and from [led_to.yaml](led_to.yaml), which is written by hand.
+writes it from [history.csv](../../docs/results/history.csv), to which it only adds, and from
+[led_to.yaml](../../docs/results/led_to.yaml), which is written by hand.
 The digest `none` is of the time before results had one: the commit is that of the page which showed the miss first.
 """
 

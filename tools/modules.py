@@ -1,10 +1,10 @@
-"""Writes docs/reference/modules.md: every module in a line, the first that it says of itself. Run: `python -m tools.modules`."""
+"""Writes out/docs/modules.md: every module in a line, the first that it says of itself. Run: `python -m tools.modules`."""
 
 import ast
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "reference" / "modules.md"
+PAGE = ROOT / "out" / "docs" / "modules.md"
 TOPS = ("pendant", "sim", "app", "benchmarks", "examples", "tools")
 
 
@@ -39,4 +39,5 @@ def page() -> str:
 
 
 if __name__ == "__main__":
+    PAGE.parent.mkdir(parents=True, exist_ok=True)
     PAGE.write_text(page(), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Writes docs/reference/reactions.md from the event table: condition, reaction, how it clears.
+"""Writes out/docs/reactions.md from the event table: condition, reaction, how it clears.
 
 Run: `python -m tools.reactions`.
 """
@@ -14,14 +14,14 @@ from pendant.robot.robot_mode import DONE_GUIDING
 from pendant.robot.stopping import LONGEST
 from pendant.tick.modes import TICK
 
-PAGE = Path(__file__).parent.parent / "docs" / "reference" / "reactions.md"
+PAGE = Path(__file__).parent.parent / "out" / "docs" / "reactions.md"
 
 HEAD = """# Reactions: condition, reaction, how it clears
 
 Written by `python -m tools.reactions` from the event table (`pendant/event_table.py`): every event that stops the arm, refuses or
 ends free-drive, refuses another wish, ends a motion, or warns. The first column is the name of the event in logs and sessions. A
-word in *italics* is a value of the event. What limits and periods are is in the settings; [free-drive](../guide/free-drive.md)
-and [stops](../guide/stops.md) say how a condition is found.
+word in *italics* is a value of the event. What limits and periods are is in the settings;
+[free-drive](../../docs/guide/free-drive.md) and [stops](../../docs/guide/stops.md) say how a condition is found.
 
 Where several conditions hold in one tick, the gravest reaction counts. A stop stands above the end of free-drive. In STOP
 the safety mode can only become graver: `SAFEGUARD_STOP`, `PROTECTIVE_STOP`, `EMERGENCY_STOP`. Of two stops the one with the
@@ -154,4 +154,5 @@ def page() -> str:
 
 
 if __name__ == "__main__":
+    PAGE.parent.mkdir(parents=True, exist_ok=True)
     PAGE.write_text(page(), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Writes docs/reference/traceability.md: who cites each requirement. Run as `python -m tools.traceability`."""
+"""Writes out/docs/traceability.md: who cites each requirement. Run as `python -m tools.traceability`."""
 
 import ast
 from collections import defaultdict
@@ -12,7 +12,7 @@ from pendant.all_settings import describe
 from pendant.events.event import Kind
 from tools.citations import ID, ORDER, ROOT, cited, comments, files, prose
 
-PAGE = ROOT / "docs" / "reference" / "traceability.md"
+PAGE = ROOT / "out" / "docs" / "traceability.md"
 BUILT = ("pendant", "sim", "app")
 CHECKED = ("tests", "benchmarks")
 MANY = 3
@@ -20,7 +20,8 @@ MANY = 3
 
 HEAD = """# Traceability
 
-Written by `python -m tools.traceability`: for each [requirement](requirements.md) the modules whose docstrings and comments cite
+Written by `python -m tools.traceability`: for each
+[requirement](../../docs/reference/requirements.md) the modules whose docstrings and comments cite
 it, the settings and rows of the event table that stand for it, and the claims and sessions that show it. `*` stands for names
 that differ only there.
 
@@ -115,4 +116,5 @@ def page() -> str:
 
 
 if __name__ == "__main__":
+    PAGE.parent.mkdir(parents=True, exist_ok=True)
     PAGE.write_text(page(), encoding="utf-8")
