@@ -9,6 +9,7 @@ from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.guard import Guard
 from app.web.lab.lab_tab import Lab
 from app.web.panel.journal import Journal
+from app.web.panel.main_bar import Taught
 from app.web.panel.mode_panel import Panel
 from app.web.recordings.recording import RecordingSwitch
 from app.web.running import Running
@@ -27,6 +28,7 @@ from app.web.widgets import style, svg
 from app.web.widgets.drawn_parts import DrawnParts
 from app.web.widgets.svg import Colour
 from pendant.events.event import Event
+from pendant.program.jog_move import MoveThere
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
@@ -89,6 +91,9 @@ class Docks:
         if interfaces is not None:
             with self._lower.add_tab("Network") as self._network_dock:
                 self.network = NetworkTab(gui, interfaces)
+        bar = self.panel.bar
+        bar.taught, bar.ended, bar.scripts = self._taught, self.teach.ended, scripts
+        self.jog.also(bar.start, self._start)
         self._upper.dock_left()
         self._upper.set_width(LEFT)
         self._lower.dock_below(self._upper)
@@ -127,6 +132,7 @@ class Docks:
             self.recording.export,
             self.recording.replay.leave,
             self.recording.replay.download,
+            self.teach.step,
             self.teach.save,
             self.teach.load,
             *(() if self.script is None else (self.script.save, self.script.load)),
@@ -137,6 +143,16 @@ class Docks:
             [button._impl.uuid for button in quiet],
             large=(self.panel.leave._impl.uuid, self.panel.reset._impl.uuid),
         )
+
+    def _taught(self) -> Taught:
+        """What the main bar runs."""
+        lesson = self.teach.lesson
+        return Taught(tuple(step.text for step in lesson.plan), self.teach.begin, self.teach.start is not None)
+
+    def _start(self) -> MoveThere | None:
+        """The way to where the program begins, at manual speed."""
+        start = self.teach.start
+        return None if start is None else MoveThere(q=tuple(start.q), name=start.name)
 
     def show(self, snapshot: Snapshot) -> bool:
         """Show a snapshot and the events since the last call, each part for itself; True if anything changed."""

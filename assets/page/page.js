@@ -50,21 +50,47 @@
   addEventListener("blur", release); document.addEventListener("visibilitychange", release); addEventListener("focusout", release);
 
   // The connection: the server's beat changes again and again while it is there.
+  //
+  // A browser makes a page wait for its next WebSocket, longer with each one that failed. viser asks for a new one each second, which
+  // ends the one that waits: after about 40 of them none comes through any more. So the page asks by HTTP whether the server is there,
+  // for ever and at most each LONGEST_PAUSE, and lets viser connect when it is. A page that nobody looks at asks as well.
+  const LONGEST_PAUSE = 5000, CONNECTING = 6000, DEAD = 30000, ENTRY = "/entry";
+  let worker = null, asking = false, asked = 0, pause = 0, connect = 0, barred = false;
+  const post = Worker.prototype.postMessage;
+  Worker.prototype.postMessage = function (message, ...rest) {
+    if (message && message.type === "set_server") worker = this;
+    if (message && message.type === "retry") { askForEntry(); return; }
+    post.call(this, message, ...rest); };
+  document.hasFocus = () => true;
+  const askForEntry = () => { const now = performance.now();
+    if (asking || !worker || now - asked < pause || now - connect < CONNECTING) return;
+    asking = true; asked = now;
+    const limit = new AbortController(); setTimeout(() => limit.abort(), LONGEST_PAUSE);
+    fetch(ENTRY, { cache: "no-store", signal: limit.signal }).then((answer) => { barred = answer.status === 401 || answer.status === 403;
+      if (!answer.ok) throw new Error(answer.statusText);
+      pause = 0; connect = performance.now(); post.call(worker, { type: "retry" }); })
+      .catch(() => { pause = Math.min(pause * 1.5 + 500, LONGEST_PAUSE); }).finally(() => { asking = false; }); };
+
   let beat = "", heard = performance.now(), presses = 0, back = 0;
   const SAID = 10000;
-  addEventListener("pointerdown", (event) => { if (document.documentElement.classList.contains("pd-cut") && event.target.closest && event.target.closest("button,input,[role=radio],[role=slider]")) presses += 1; }, true);
+  addEventListener("pointerdown", (event) => { if (document.documentElement.classList.contains("pd-cut") && event.target.closest && event.target.closest("button,input,[role=radio],[role=slider]") && !event.target.closest("#pd-lost")) presses += 1; }, true);
+  const lasted = (seconds) => seconds < 120 ? `${seconds} s` : `${Math.floor(seconds / 60)} minutes`;
+  const banner = (text, reload) => { const lost = at("#pd-lost"), [words, button] = lost.children;
+    if (words.textContent !== text) words.textContent = text; button.hidden = !reload; };
   const listen = () => { const now = at("[data-pd-beat]"), value = now ? now.getAttribute("data-pd-beat") : "";
     if (value && value !== beat) { beat = value; heard = performance.now(); }
-    const lost = at("#pd-lost"), silent = performance.now() - heard;
+    const lost = at("#pd-lost"), silent = performance.now() - heard, cut = Boolean(beat) && silent > STALE;
+    if (cut && silent > DEAD) askForEntry(); // of a connection that is dead the browser may not know
     if (lost && document.visibilityState === "visible") {
-      const told = beat && silent > STALE ? `No answer from the simulation for ${Math.floor(silent / 1000)} s. What you see is old; nothing that you press arrives.` : "";
+      const gone = `No answer from the simulation for ${lasted(Math.floor(silent / 1000))}. What you see is old; nothing that you press arrives.`;
+      const told = cut ? `${gone} ${barred ? "It does not let this page in: open the link that pendant has printed." : "Trying again, until it answers."}` : "";
       const root = document.documentElement, picture = at(".pd-picture");
-      if (Boolean(told) !== root.classList.contains("pd-cut")) { root.classList.toggle("pd-cut", Boolean(told));
-        if (told) { presses = back = 0; release(); } else if (presses) back = performance.now(); }
+      if (cut !== root.classList.contains("pd-cut")) { root.classList.toggle("pd-cut", cut);
+        if (cut) { presses = back = 0; restored = false; release(); } else { if (presses) back = performance.now(); restore(); } }
       const again = back && performance.now() - back < SAID;
       if (told || again) { const box = (picture || document.body).getBoundingClientRect();
         Object.assign(lost.style, { left: `${box.left}px`, width: `${box.width}px`, top: `${Math.max(box.top, 0)}px` });
-        lost.textContent = told || `The simulation answers again. What you pressed meanwhile (${presses}) may not have arrived: look, and press again.`; }
+        banner(told || `The simulation answers again. What you pressed meanwhile (${presses}) may not have arrived: look, and press again.`, cut); }
       lost.classList.toggle("pd-on", Boolean(told || again)); lost.classList.toggle("pd-back", !told && Boolean(again)); }
     if (beat && at(".pd-picture") && at("#pd-opening") || performance.now() - began > OPENING) open(); };
   const open = () => { const shown = at("#pd-opening"); if (!shown) return; shown.classList.add("pd-gone"); setTimeout(() => shown.remove(), 300); restore();
@@ -188,6 +214,9 @@
   addEventListener("DOMContentLoaded", () => {
     const skip = Object.assign(document.createElement("a"), { href: "#", className: "pd-skip", textContent: "Skip to the stop (or key X)" });
     skip.addEventListener("click", (event) => { event.preventDefault(); const button = stop(); if (button) button.focus(); });
-    document.body.prepend(skip, made("div", "pd-lost", "alert"));
+    const reload = Object.assign(document.createElement("button"), { type: "button", textContent: "Reload", hidden: true });
+    reload.addEventListener("click", () => location.reload());
+    const lost = made("div", "pd-lost", "alert"); lost.append(document.createElement("span"), reload);
+    document.body.prepend(skip, lost);
     setInterval(() => { nameAll(); listen(); advance(); }, BEAT); });
 })();

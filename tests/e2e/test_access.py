@@ -5,10 +5,13 @@ from itertools import zip_longest
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, expect
 
+from app.web.server import serve
 from pendant.tick.modes import Mode
+from sim.run.loop import Loop
 from tests.e2e.cell import Cell
+from tests.e2e.conftest import COARSE
 from tests.e2e.finger import middle, tap
 
 pytestmark = pytest.mark.e2e
@@ -197,3 +200,36 @@ def test_a_page_without_an_answer_says_so(visit: Visit, cell: Cell) -> None:
     cell.served._still_page = False
     expect(page.locator("#pd-lost")).to_contain_text("What you pressed meanwhile (1) may not have arrived", timeout=20_000)
     expect(page.locator("html.pd-cut")).to_have_count(0)
+
+
+AWAY = [pytest.param(2.0, 0.0, marks=pytest.mark.every_size), pytest.param(40.0, 0.0, marks=pytest.mark.every_size), (3.0, 600.0)]
+"""How long there is no server [s], and what the page's clock is moved on by meanwhile."""
+
+
+@pytest.mark.parametrize(("seconds", "skipped"), AWAY)
+def test_the_page_comes_back_by_itself_when_the_server_does(browser: Browser, loop: Loop, seconds: float, skipped: float) -> None:
+    """With its tab, also after more refused connections than a browser lets a page try without a pause."""
+    arm, scenario = loop.simulation.arm, loop.simulation.scenario
+    first = serve(loop, arm, scenario)
+    port = first.server.get_port()
+    page = browser.new_context().new_page()
+    page.clock.install()
+    page.goto(f"{first.url}/{COARSE}")
+    page.get_by_role("button", name="EMERGENCY STOP").wait_for(timeout=60_000)
+    page.get_by_role("tab", name="Walls", exact=True).click()
+    page.wait_for_timeout(500)
+    first.close()
+    expect(page.locator("#pd-lost")).to_contain_text("Trying again", timeout=30_000)
+    expect(page.get_by_role("button", name="Reload")).to_be_visible()
+    page.clock.fast_forward(round(1000 * skipped))
+    page.wait_for_timeout(1000 * seconds)
+    if skipped:
+        expect(page.locator("#pd-lost")).to_contain_text("10 minutes", timeout=20_000)
+    second = serve(loop, arm, scenario, port=port)
+    try:
+        expect(page.locator("#pd-lost")).not_to_be_visible(timeout=60_000)
+        expect(page.get_by_role("tab", name="Walls", exact=True)).to_have_attribute("aria-selected", "true", timeout=30_000)
+        assert len(second.server.get_clients()) == 1
+    finally:
+        second.close()
+        page.context.close()

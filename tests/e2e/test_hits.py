@@ -114,7 +114,7 @@ def test_a_script_into_the_table_is_stopped_and_ends(visit: Callable[..., Page],
     open_tab(page, "Script")
     page.locator("textarea:visible").first.fill(DOWN)
     cell.wait(lambda: cell.served.docks.script is not None and "down" in str(cell.served.docks.script.text.value), "typed")
-    page.get_by_role("button", name="Run", exact=True).last.click()
+    page.locator(".pd-left").get_by_role("button", name="Run", exact=True).last.click()
     hit = hit_of(cell)
     told(page, cell, hit)
     stays(cell)

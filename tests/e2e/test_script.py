@@ -21,11 +21,11 @@ def served(served_with_scripts: Served) -> Served:
 def test_run_the_example_and_mend_a_mistake(visit: Callable[..., Page], cell: Cell) -> None:
     page = visit(1280, 800)
     open_tab(page, "Script")
-    page.get_by_role("button", name="Run", exact=True).last.click()
+    page.locator(".pd-left").get_by_role("button", name="Run", exact=True).last.click()
     page.locator(".pd-listing .pd-now", has_text="movej").wait_for()
     cell.wait(lambda: cell.happened(Kind.PROGRAM_FINISHED), "there and back")
     page.get_by_text("turned by 0.3").wait_for()
     page.locator("textarea:visible").first.fill("def wrong():\n  nothing()\nend")
     cell.wait(lambda: "wrong" in str(cell.served.docks.script and cell.served.docks.script.text.value), "typed")
-    page.get_by_role("button", name="Run", exact=True).last.click()
+    page.locator(".pd-left").get_by_role("button", name="Run", exact=True).last.click()
     page.get_by_text("line 2, column").last.wait_for()

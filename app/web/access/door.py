@@ -21,6 +21,9 @@ from app.web.access.listening import Access
 from app.web.access.served_page import dress
 
 MAX_CLIENTS = 16
+ENTRY = "/entry"
+"""Asked by a page that has lost its connection: may it come in again? The answer is empty."""
+
 AGAIN = "5"
 """When a page that found no place asks again [s]."""
 
@@ -57,10 +60,14 @@ class Door:
             answer = self._ask_for_token(self._access.token, connection, request)
             if answer is not None:
                 return answer
-        if upgrade and not self.ready:
+        asks = _path(request) == ENTRY
+        if (upgrade or asks) and not self.ready:
             return self._turn_away(HTTPStatus.SERVICE_UNAVAILABLE, "not ready")
-        if len(self.inside) >= MAX_CLIENTS and (upgrade or _path(request) == "/"):
+        if len(self.inside) >= MAX_CLIENTS and (upgrade or asks or _path(request) == "/"):
             return self._turn_away(HTTPStatus.SERVICE_UNAVAILABLE, f"at most {MAX_CLIENTS} clients", AGAIN)
+        if asks and not upgrade:
+            headers = Headers({"Content-Length": "0", "Cache-Control": "no-store", "X-Content-Type-Options": "nosniff"})
+            return Response(HTTPStatus.OK.value, HTTPStatus.OK.phrase, headers, b"")
         if upgrade and self._protocol not in _listed(request.headers, "Sec-WebSocket-Protocol"):
             return self._turn_away(HTTPStatus.BAD_REQUEST, "another version: load the page again")
         response = pages(connection, request)

@@ -6,20 +6,11 @@ from app.web.access.guard import Guard
 from app.web.panel.activation_switches import ActivationSwitches
 from app.web.panel.button_holds import ButtonHolds
 from app.web.panel.clock_pace import pace
-from app.web.panel.panel_message import HINTS, Remembered, said
+from app.web.panel.main_bar import MainBar
+from app.web.panel.panel_message import HINTS, Remembered
 from app.web.panel.reasons_at_the_arm import rgb, show_reasons
-from app.web.panel.state_words import (
-    ASKED,
-    FIGURES,
-    LEAVING_PERIODS,
-    MOVES,
-    PERIOD_COLOURS,
-    PERIOD_WORDS,
-    SAFETY_WORDS,
-    WORDS,
-    pull_row,
-    user_row,
-)
+from app.web.panel.shown_state import ShownState, shown
+from app.web.panel.state_words import FIGURES, PERIOD_COLOURS, PERIOD_WORDS, pull_row, user_row
 from app.web.panel.way_back import WayBack
 from app.web.running import Running
 from app.web.scene.arm_marks import ArmMarks
@@ -31,12 +22,14 @@ from pendant.all_settings import Settings, limits_checksum
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command
-from pendant.program.steps import ProgramState
 from pendant.tick.limit_engine import Monitored
-from pendant.tick.modes import TICK_RATE, Law, Mode, Phase, Safety
+from pendant.tick.modes import TICK_RATE, Mode, Phase
 from pendant.walls.containment import TETHER
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
+
+ACTIVE, IDLE = (25, 113, 194), (134, 142, 150)
+"""Colour of the free-drive button where it does something, and where free-drive cannot begin."""
 
 HOLD = "Hold for free-drive"
 CONFIRM, LEAVE = "Press to confirm", "Short press: leave"
@@ -44,9 +37,6 @@ CONFIRM, LEAVE = "Press to confirm", "Short press: leave"
 
 HOLD_RATE = 30.0
 """How often a held button is asked to say so [Hz]; viser sends at most 20 a second of all controls of a panel."""
-
-ABOUT_TO_END = 1.0
-"""A free-drive or restart period with less than this left is shown in amber [s]."""
 
 LEAST_SPEED = 0.002
 """A speed below this is not told by its figure [m/s]."""
@@ -68,7 +58,8 @@ class Panel:
         gui = server.gui
         gui.set_panel_label(arm.title)  # more does not fit
         self.light = Html(gui)
-        self.free_drive = gui.add_button(HOLD, color=(25, 113, 194), icon=viser.Icon.HAND_STOP)
+        self.bar = MainBar(gui, loop)
+        self.free_drive = gui.add_button(HOLD, color=ACTIVE, icon=viser.Icon.HAND_STOP)
         self.rings = Html(gui)
         self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True, hint="Key: L")
         self.note = Html(gui, svg.note(*HINTS[Mode.TEACH][:3]))
@@ -76,9 +67,6 @@ class Panel:
         self.marks = ArmMarks(server, arm)
         self.hit = HitMark(server, arm)
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
-        self.speed = gui.add_slider(
-            "Speed [%]", min=0, max=100, step=5, initial_value=100, hint="Of programs and of jogging, at once"
-        )
         self.numbers = Html(gui)  # after what is always in sight: it grows and shrinks
         self.activation = ActivationSwitches(gui, guard, loop)
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
@@ -104,36 +92,40 @@ class Panel:
         if self.excused is not None:
             self._remembered.forget(self.excused)
         self._remembered.see(decision, snapshot.tick)
-        if self._loop.failure:
-            return self._fail(self._loop.failure)
-        self.said = said(self._remembered, decision, self._loop.settings, paused=self._loop.paused)
-        word, colour = ("Clock paused", Colour.AMBER) if self._loop.paused else _state(decision)
-        bars = decision.monitored
+        self.state = state = shown(
+            decision,
+            self._loop.settings,
+            self._remembered,
+            paused=self._loop.paused,
+            failure=self._loop.failure,
+            steps=self.bar.count,
+        )
+        self.said = state.text
+        whole = not self._loop.failure
         changed = [
-            self.light.show(svg.light(_name(decision), word, SAFETY_WORDS[decision.safety], colour, pace=pace(self._loop))),
+            self.light.show(
+                svg.light(state.name, state.word, state.safety, state.colour, pace=pace(self._loop) if whole else None)
+            ),
+            self.note.show(svg.note(state.text.headline, state.text.text, state.text.colour, state.text.reasons)),
+            self.bar.show(state, decision, fresh),
+            enable(self.leave, state.leaves),
+            enable(self.free_drive, whole),
+            enable(self.reset, state.resets),
+            self._name_button(decision, state),
+            self._show_free_drive(snapshot, fresh, state) if whole else self.rings.show(svg.windows([])),
+        ]
+        return any(changed)
+
+    def _show_free_drive(self, snapshot: Snapshot, fresh: list[Event], state: ShownState) -> bool:
+        """Periods, the way back, marks on the arm, figures; True if anything changed."""
+        decision, colour, bars = snapshot.decision, state.colour, snapshot.decision.monitored
+        changed = [
             self.rings.show(svg.windows([self._window(p.name, p.ticks, p.total, colour) for p in decision.periods])),
-            self.note.show(svg.note(self.said.headline, self.said.text, self.said.colour, self.said.reasons)),
             self.back.show(snapshot, fresh),
             self.marks.light(rgb(colour)),
             show_reasons(self.said, self._remembered, snapshot, marks=self.marks, hit=self.hit),
             self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot), FIGURES)),
-            enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
-            enable(self.free_drive, True),
-            enable(self.reset, decision.mode is Mode.STOP),
             self.activation.show(snapshot),
-            self._name_button(decision),
-        ]
-        return any(changed)
-
-    def _fail(self, reason: str) -> bool:
-        """Say that nothing is simulated any more, and how to go on; True if that was new."""
-        changed = [
-            self.light.show(svg.light("FAULT", "Nothing moves", "Unknown", Colour.RED)),
-            self.note.show(svg.note("The simulation broke down", f"{reason}. Press Start over, on the tab Lab.", Colour.RED)),
-            self.rings.show(svg.windows([])),
-            enable(self.free_drive, False),
-            enable(self.leave, False),
-            enable(self.reset, False),
         ]
         return any(changed)
 
@@ -142,13 +134,19 @@ class Panel:
         self.activation.let_go(client)
         self.holds.let_go(client)
 
-    def _name_button(self, decision: Decision) -> bool:
-        """While a confirmation is asked for, the button gives it (FD-8); in free-drive a short press leaves (FD-8a)."""
+    def _name_button(self, decision: Decision, state: ShownState) -> bool:
+        """While a confirmation is asked for, the button gives it (FD-8); in free-drive a short press leaves (FD-8a).
+
+        Where free-drive cannot begin it is grey. It is not disabled then: that would lose the pointer-up of a press.
+        """
         free = decision.mode is Mode.FREE_DRIVE and decision.phase is not Phase.HELD
         label = CONFIRM if decision.phase is Phase.CONFIRM else LEAVE if free else HOLD
         changed = self.free_drive.label != label
         if changed:
             self.free_drive.label = label
+        colour = ACTIVE if state.frees else IDLE
+        if self.free_drive.color != colour:
+            self.free_drive.color, changed = colour, True
         return changed
 
     def _window(self, name: str, ticks: int, total: int, colour: Colour) -> svg.Window:
@@ -160,9 +158,6 @@ class Panel:
         settings = self._loop.settings
         if settings is not self._settings:
             self._settings, self._digest = settings, limits_checksum(settings)
-            percent = round(100.0 * settings.program.speed)
-            if self.speed.value != percent:
-                self.speed.value = percent
         return [
             ("Speed of the tool", _speed(seen.v_tcp)),
             ("Speed of the elbow", _speed(seen.v_elbow)),
@@ -170,7 +165,7 @@ class Panel:
             *user_row(snapshot.user),
             *_wall(snapshot.decision),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),
-            ("Limits checksum", self._digest),
+            ("Safety checksum", self._digest),
         ]
 
     def _connect(self) -> None:
@@ -195,31 +190,9 @@ class Panel:
         sends(self.reset, Command.RESET)
         sends(self.leave, Command.LEAVE_FREE_DRIVE)
 
-        @self.speed.on_update
-        async def _(event: viser.GuiEvent) -> None:
-            if event.client_id is not None:  # a person, and not the page bringing itself up to date
-                desk.set({"program.speed": float(self.speed.value) / 100.0})
-
         @self.mode.on_click
         async def _(_: viser.GuiEvent) -> None:
             desk.command(Command.TEACH if self.mode.value == "TEACH" else Command.NORMAL)
-
-
-def _name(decision: Decision) -> str:
-    """What stands in the mode light in large letters: the mode, of a stop what kind it is."""
-    stop = decision.mode is Mode.STOP and decision.safety > Safety.REDUCED
-    return SAFETY_WORDS[decision.safety].upper() if stop else decision.mode.replace("_", "-")
-
-
-def _state(decision: Decision) -> tuple[str, Colour]:
-    """The mode light's word and colour."""
-    if any(p.name in LEAVING_PERIODS and p.ticks < ABOUT_TO_END * TICK_RATE for p in decision.periods):
-        return "About to end", Colour.AMBER
-    if decision.mode is Mode.RUN and decision.program is ProgramState.PAUSED:
-        return "Program paused", Colour.AMBER
-    if decision.mode in (Mode.NORMAL, Mode.TEACH) and decision.law is Law.FOLLOW:
-        return MOVES
-    return ASKED.get(decision.phase, WORDS[decision.mode])
 
 
 def _speed(v: float) -> str:

@@ -11,7 +11,7 @@ from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
 from pendant.events.event_row import Clears, Effect, Severity
 from pendant.program.steps import ProgramState
-from pendant.tick.modes import TICK_RATE, Mode, Safety
+from pendant.tick.modes import TICK_RATE, Law, Mode, Safety
 
 REASONS = 4
 """Parameters named in a refusal; the log has all of them."""
@@ -54,14 +54,13 @@ HINTS = {
     Mode.TEACH: PanelText("The arm can be guided by hand", "Hold the button, let go, then drag the arm.", Colour.GREY),
     Mode.NORMAL: PanelText("The arm holds its place", "Choose TEACH to guide it by hand or to teach it.", Colour.GREY),
     Mode.REMOTE: PanelText("A remote controller has the arm", "Choose TEACH to take it back to this pendant.", Colour.GREY),
-    Mode.RUN: PanelText("The program runs", "Keep out of its way. Pause and Stop are on the tab Teach.", Colour.GREEN),
+    Mode.RUN: PanelText("The program runs", "Keep out of its way. Pause and Stop are above.", Colour.GREEN),
     Mode.FREE_DRIVE: PanelText("Guide the arm", "Drag it. A short press of the button, or Leave, ends free-drive.", Colour.BLUE),
     Mode.STOP: PanelText("Stopped", "See what happened, then press Reset.", Colour.RED),
 }
-PROGRAM_PAUSED = PanelText("The program is paused", "Run goes on with it, Stop ends it: both on the tab Teach.", Colour.AMBER)
-MEASURING = PanelText(
-    "The arm measures its payload", "It turns its wrist by itself: hands off. Stop measuring is on the tab Tools.", Colour.BLUE
-)
+PROGRAM_PAUSED = PanelText("The program is paused", "Run goes on with it, Stop ends it.", Colour.AMBER)
+MOVING = PanelText("The arm moves", "Keep out of its way until it stands.", Colour.GREEN)
+MEASURING = PanelText("The arm measures its payload", "It turns its wrist by itself: hands off. Stop ends it.", Colour.BLUE)
 CLOCK_PAUSED = PanelText(
     "The simulation is paused", "Nothing moves. Run, on the tab Lab, or the key P lets it go on.", Colour.AMBER
 )
@@ -142,6 +141,11 @@ class Remembered:
         return decision.mode is Mode.FREE_DRIVE and row.effect is not Effect.ENTER
 
 
+def moves(decision: Decision) -> bool:
+    """The arm moves, or is asked to."""
+    return decision.law in (Law.FOLLOW, Law.BRAKE) or not decision.static
+
+
 def how_to_guide(settings: Settings) -> str:
     """What to do to guide the arm, in words."""
     hold = f"Hold the button for {settings.activation.period:g} s"
@@ -154,7 +158,7 @@ def how_to_guide(settings: Settings) -> str:
 
 def said(remembered: Remembered, decision: Decision, settings: Settings, *, paused: bool = False) -> PanelText:
     """What the panel says in a state; `paused` is that of the simulation's clock."""
-    if decision.mode is Mode.STOP:
+    if decision.mode is Mode.STOP or decision.safety > Safety.REDUCED:
         return HINTS[Mode.STOP] if remembered.stop is None else _told(remembered.stop)
     if paused:
         return CLOCK_PAUSED
@@ -167,6 +171,8 @@ def said(remembered: Remembered, decision: Decision, settings: Settings, *, paus
         return _told(remembered.note, remembered.prevented if no_entry else ())
     if decision.program is ProgramState.PAUSED:
         return PROGRAM_PAUSED
+    if decision.mode in (Mode.TEACH, Mode.NORMAL, Mode.REMOTE) and moves(decision):
+        return MOVING
     if decision.mode is not Mode.TEACH:
         return HINTS[decision.mode]
     reduced = "Reduced mode: lower speeds. " if decision.safety is Safety.REDUCED else ""

@@ -16,7 +16,13 @@ WORDS = {
     Mode.STOP: ("Stopped", Colour.RED),
 }
 MOVES = ("The arm moves", Colour.GREEN)
-"""Outside of programs: it is jogged, or the payload wizard turns it."""
+"""Outside of programs: it is jogged, the payload wizard turns it, or it comes to rest."""
+
+STOPPING = ("Stopping", Colour.RED)
+"""A stop in which the arm does not stand yet."""
+
+RESET_NEEDED = "Reset needed"
+"""The safety mode beside a STOP that no safety mode has caused."""
 
 ASKED = {
     Phase.ACTIVATION: ("Keep holding", Colour.BLUE),

@@ -40,7 +40,9 @@ STILL = 0.15
 HOME: Literal["home"] = "home"
 THERE: Literal["there"] = "there"
 STRAIGHT: Literal["straight"] = "straight"
-"""The buttons that move to a posture, the arm's own or the one that the sliders say, and straight to a pose that was typed."""
+START: Literal["start"] = "start"
+"""The buttons that move to a posture, the arm's own or the one that the sliders say, straight to a pose that was typed, and to
+where the program begins."""
 
 FARTHEST, FULLEST = 3000.0, 360.0
 """Of a typed pose [mm], [°]; what the arm cannot reach is refused as it begins."""
@@ -52,7 +54,7 @@ BLUE = (25, 113, 194)
 NEAR = math.radians(0.5)
 """The arm is there when no joint is further from the sliders [rad]."""
 
-Which = tuple[int, int] | Literal["home", "there", "straight"]
+Which = tuple[int, int] | Literal["home", "there", "straight", "start"]
 """A button: axis and sign, or where it moves to."""
 
 HOLD_ON = "Nothing moved: let go too early. The arm moves while a button is held."
@@ -82,6 +84,7 @@ class JogTab:
         self._home = tuple(arm.chain.home)
         self._loop, self._names = loop, [name.replace("_", " ").capitalize() for name in arm.chain.joints]
         self._press: JogPress | None = None
+        self._begin: Callable[[], MoveThere | None] = lambda: None
         self._over: set[int] = set()  # clients whose press is over, their pointer not lifted
         self._presses = False  # one of them still presses
         self.frame = gui.add_dropdown("Move by", tuple(FRAMES), initial_value="Joints")
@@ -146,6 +149,11 @@ class JogTab:
         self._over.discard(client)
         self._presses = self._presses and bool(self._over)
 
+    def also(self, button: viser.GuiButtonHandle, begin: Callable[[], MoveThere | None]) -> None:
+        """Let a button of another place move the arm, while it is held, to what `begin` says then; None: nowhere."""
+        self._begin = begin
+        self._holds(button, START)
+
     def _wanted(self, snapshot: Snapshot, may: bool) -> tuple[float, ...] | None:
         """The posture of the sliders [rad], as long as it is to be seen; None: the arm is there, or nobody asked."""
         held = self._press is not None and self._press.button == THERE
@@ -167,8 +175,10 @@ class JogTab:
         """What the sliders say (n,) [rad]."""
         return tuple(math.radians(float(slider.value)) for slider in self.sliders)
 
-    def _asked(self, which: Which) -> Jogged:
-        """The motion of a button."""
+    def _asked(self, which: Which) -> Jogged | None:
+        """The motion of a button; None: it has nowhere to move to."""
+        if which == START:
+            return self._begin()
         if which == HOME:
             return MoveThere(q=self._home, name="home")
         if which == THERE:
@@ -222,7 +232,9 @@ class JogTab:
             self._press = press = JogPress(client, which, before.since if before is not None and goes_on else tick, tick)
             if not press.still:
                 return
-            self._loop.desk.jog(self._asked(which))
+            asked = self._asked(which)
+            if asked is not None:
+                self._loop.desk.jog(asked)
 
         return held
 

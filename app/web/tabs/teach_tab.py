@@ -44,9 +44,9 @@ class Teach:
         self._next = 0  # the step that `TaughtStep` does
         self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False, hint="Key: M")
         with gui.add_folder("Program"):
-            self.run = gui.add_button_group("Run", ("Run", "Pause", "Step", "Stop"))
             self.message = Html(gui)
             self.steps = StepEditor(gui, self.edits, self._edited)
+            self.step = gui.add_button("Do one step", color="gray", hint="The chosen step, then the next")
         with gui.add_folder("Waypoints"):
             self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", waypoints_of(self.lesson))
             self.edit = gui.add_button_group("Arm", ("Go to", "Re-teach"))
@@ -87,6 +87,7 @@ class Teach:
                 self.steps.show(self._now(at), decision.program.value.lower() if active else ""),
                 self.ghost.show(target, snapshot, name or ""),
                 enable(self.register, decision.mode is not Mode.RUN),
+                enable(self.step, bool(self.lesson.plan) and decision.mode in (Mode.TEACH, Mode.NORMAL)),
             ]
         )
 
@@ -157,7 +158,7 @@ class Teach:
         on(self.register, self.mark)
         on(self.edit, self._edit)
         on(self.order, self._reorder)
-        on(self.run, self._run)
+        on(self.step, self.do_one)
 
         @self.choice.on_update
         async def _(event: viser.GuiEvent) -> None:
@@ -227,18 +228,23 @@ class Teach:
         else:
             self._refresh(old)
 
-    def _run(self) -> None:
-        desk, state = self._loop.desk, self._loop.latest().decision.program
-        if self.run.value == "Pause":
-            desk.command(Command.PAUSE_PROGRAM)
-        elif self.run.value == "Stop":
-            self._next = 0
-            desk.command(Command.STOP_PROGRAM)
-        elif state is ProgramState.PAUSED and self.run.value == "Run":
-            desk.command(Command.RESUME_PROGRAM)
-        elif self.run.value == "Run":
-            self._hand_over(self.lesson.plan, 0, self.lesson.repeat)
-        else:
-            plan = self.lesson.plan
-            self._hand_over(plan[self._next : self._next + 1], self._next)
-            self._next = (self._next + 1) % max(len(plan), 1)
+    @property
+    def start(self) -> Waypoint | None:
+        """Where its first move leads; None: it moves to no waypoint."""
+        first = next((step.to for step in self.lesson.plan if step.to is not None), None)
+        return None if first is None else self.lesson.find(first)
+
+    def begin(self) -> None:
+        """Run the program from its first step."""
+        self._next = 0
+        self._hand_over(self.lesson.plan, 0, self.lesson.repeat)
+
+    def do_one(self) -> None:
+        """Do one step, and make ready for the one after it."""
+        plan = self.lesson.plan
+        self._hand_over(plan[self._next : self._next + 1], self._next)
+        self._next = (self._next + 1) % max(len(plan), 1)
+
+    def ended(self) -> None:
+        """The program was ended by hand: single steps begin anew."""
+        self._next = 0

@@ -1,6 +1,6 @@
 """How single controls look, by their ids; everything else of the look stands in assets/page/page.css."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 QUIET = "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(134,142,150,.28)"
 """How a button looks that needs no eye."""
@@ -60,6 +60,21 @@ def pairs(buttons: list[str]) -> str:
         "margin-top:-52px!important}"
         f":is({both}){{height:44px!important;font-size:13px;padding:0 4px;touch-action:pan-y;user-select:none;{QUIET}}}</style>"
     )
+
+
+def row(buttons: Sequence[str], shares: Sequence[float], *, held: str) -> str:
+    """Put these buttons beside each other, each with its share of the width, for a finger; one of them is held."""
+    room = f"(100% - {24 + 6 * (len(buttons) - 1)}px)"
+    rules = ""
+    for place, (button, share) in enumerate(zip(buttons, shares, strict=True)):
+        left, up = sum(shares[:place]), "margin-top:-52px!important;" if place else ""
+        rules += (
+            f'div:has(>[id="{button}"]){{width:calc({room}*{share:g})!important;{up}'
+            f"margin-left:calc(12px + {room}*{left:g} + {6 * place}px)!important;margin-right:0!important}}"
+        )
+    every = ",".join(f'[id="{button}"]' for button in buttons)
+    look = f"height:44px!important;font-size:13px;padding:0 2px;user-select:none;{QUIET}"
+    return f'<style data-pd-held="{held}">{rules}:is({every}){{{look}}} :is({every}):disabled{{opacity:.6}}</style>'
 
 
 def held(button: str) -> str:

@@ -152,6 +152,11 @@ def loads(true: float, configured: float) -> str:
     )
 
 
+def program_line(text: str) -> str:
+    """Which program there is, or which step of it is done, in a line that keeps its height."""
+    return f'<p class="pd-program" title="{escape(text)}">{escape(text)}</p>'
+
+
 def differences(text: str, rows: Sequence[tuple[str, str, str]]) -> str:
     """What would change: name, from, to."""
     lines = "".join(f"<tr><td>{escape(name)}</td><td>{escape(old)}</td><td>{escape(new)}</td></tr>" for name, old, new in rows)

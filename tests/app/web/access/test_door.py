@@ -225,3 +225,19 @@ def test_a_refusal_is_plain_text_that_nobody_keeps(here: Caller) -> None:
     assert answer.headers["Content-Type"] == "text/plain; charset=utf-8"
     assert (answer.headers["X-Content-Type-Options"], answer.headers["Cache-Control"]) == ("nosniff", "no-store")
     assert b"<" not in bytes(answer.body)
+
+
+def test_a_page_that_was_parted_asks_whether_it_may_come_in_again(network: Caller, here: Caller) -> None:
+    answer = network.ask("/entry", Cookie=COOKIE)
+    assert (None if answer is None else (answer.status_code, bytes(answer.body))) == (200, b"")
+    network.turned_away(network.ask("/entry"), 401, "no token")
+    here.door.ready = False
+    here.turned_away(here.ask("/entry", Host="127.0.0.1:8080"), 503, "not ready")
+
+
+def test_it_waits_while_there_is_no_place(here: Caller) -> None:
+    for _ in range(MAX_CLIENTS):
+        here.join(Connection("127.0.0.1", 8080), Host="127.0.0.1:8080")
+    answer = here.ask("/entry", Host="127.0.0.1:8080")
+    assert answer is not None
+    assert answer.status_code == 503

@@ -91,7 +91,8 @@ def test_every_mode_and_safety_mode_has_words(loop: FakeLoop, still: Served) -> 
     for loop.mode in Mode:
         for loop.safety in Safety:
             still.docks.show(loop.latest())
-            assert loop.mode.replace("_", "-") in still.panel.light.shown
+            stopped = loop.safety > Safety.REDUCED
+            assert ("STOP" if stopped else loop.mode.replace("_", "-")) in still.panel.light.shown
 
 
 def test_what_does_not_change_is_not_sent(loop: FakeLoop, still: Served) -> None:

@@ -126,7 +126,7 @@ def test_only_at_rest_in_teach_and_normal_the_buttons_can_be_used(served: Served
 
 
 def test_the_speed_override_goes_to_the_desk_and_shows_what_holds(served: Served, join: Join, loop: FakeLoop) -> None:
-    client, slider = join(), served.panel.speed
+    client, slider = join(), served.panel.bar.speed
     client.set(slider._impl.uuid, value=40)
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"program.speed": 0.4}, "the wish")
     loop.settings = apply(Settings(), {"program.speed": 0.7})

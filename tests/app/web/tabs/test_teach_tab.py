@@ -40,7 +40,7 @@ def test_waypoints_are_registered_and_run_as_a_program(served: Served, join: Joi
     register(served, client, 2)
     assert teach.choice.options == ("P1", "P2")
     until(lambda: "Move to P2" in teach.steps.list.shown, "listed")
-    client.set(teach.run._impl.uuid, value="Run")
+    client.set(served.panel.bar.run._impl.uuid, value=True)
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.program is not None, "handed over")
     inputs = loop.wishes[-1].inputs
     assert [step.q for step in inputs.program.steps if isinstance(step, JointMove)] == [pytest.approx(HOME)] * 2
@@ -60,8 +60,7 @@ def test_the_step_that_runs_is_marked(loop: FakeLoop, still: Served, own: bool) 
         )
         teach._refresh()
     texts = [step.text for step in teach.lesson.plan]
-    teach.run.value = "Run"
-    teach._run()
+    teach.begin()
     loop.program = ProgramState.RUNNING
     for number in (1, 2, 3):
         loop.step = number
@@ -85,8 +84,8 @@ def test_a_single_step_is_marked_as_what_it_is(served: Served, join: Join, loop:
     register(served, client, 2)
     for text in ("P1", "P2", "P1"):
         loop.program, loop.step = ProgramState.STOPPED, 0
-        until(lambda: "pd-now" not in teach.steps.list.shown, "nothing runs")
-        client.set(teach.run._impl.uuid, value="Step")
+        until(lambda: "pd-now" not in teach.steps.list.shown and not teach.step.disabled, "nothing runs")
+        client.set(teach.step._impl.uuid, value=True)
         until(lambda text=text: [step.to for step in teach._running] == [text], "handed over")
         loop.program, loop.step = ProgramState.RUNNING, 1
         until(lambda text=text: f". Move to {text} <em>" in teach.steps.list.shown, text)
@@ -231,12 +230,11 @@ def test_a_program_that_repeats_is_handed_over_and_one_that_takes_no_time_is_not
     teach = still.docks.teach
     teach.mark()
     teach.edits.to(msgspec.structs.replace(teach.lesson, repeat=0))
-    teach.run.value = "Run"
-    teach._run()
+    teach.begin()
     loop.advance()
     assert loop.wishes[-1].inputs.program.repeat == 0
     teach.edits.to(teach.lesson.with_steps([TaughtStep(do="output on")]))
-    teach._run()
+    teach.begin()
     assert "needs a step that takes time" in teach.message.shown
 
 
