@@ -1,0 +1,1 @@
+"""Logs of real arms: read and mended; an arm fitted to them, and held against them. Uses files/, log_reading/."""

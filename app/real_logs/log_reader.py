@@ -1,0 +1,51 @@
+"""Logs as people have them, read: CSV of RTDE recorders, tables without a header, bags of ROS 2, our own recordings."""
+
+from pathlib import Path
+
+import numpy as np
+
+from app.files.bad_input import ABSENT, BadInput
+from app.log_reading.reader import Log, read
+from app.real_logs.joint_log import JointLog
+from app.real_logs.log_bag import read_bag
+from app.real_logs.log_mending import mend
+from app.real_logs.log_table import read_table
+from sim.arm.arm_file import Arm
+
+
+def read_log(path: Path, arm: Arm, *, columns: str | None = None, effort: str = "torque") -> JointLog:
+    """A log of an arm from a file.
+
+    Args:
+        path: of the file: a table as text, a bag of ROS 2 in MCAP, or a recording of ours.
+        arm: the arm that it is of.
+        columns: what the columns of a table without a header are, as `--columns`.
+        effort: what the effort of a JointState is, "torque" or "current".
+
+    Raises:
+        BadInput: it cannot be used, in one line.
+    """
+    if not path.is_file():
+        raise BadInput(str(path), "", ABSENT, "is no file; expected a log of an arm")
+    if path.suffix == ".db3":
+        raise BadInput(path.name, "", ABSENT, "is a bag in SQLite; `ros2 bag convert` makes MCAP of it")
+    if path.suffix != ".mcap":
+        found, table, told = read_table(path, columns, arm.n)
+        scaled = {what: each * found.factors.get(what, 1.0) for what, each in table.items()}
+        return mend(path.name, scaled, arm, told, given=frozenset(found.factors))
+    try:
+        recording = read(path)
+    except BadInput:
+        values, told = read_bag(path, arm, effort)
+        return mend(path.name, values, arm, told)
+    return _of_recording(path.name, recording, arm)
+
+
+def _of_recording(name: str, recording: Log, arm: Arm) -> JointLog:
+    """A recording of ours: what its controller knew, and nothing of the truth."""
+    if recording.arm.n != arm.n:
+        raise BadInput(name, "robot", recording.arm.name, f"has {recording.arm.n} joints, the {arm.name} {arm.n}")
+    state = recording.state
+    columns = {"t": recording.t[:, None], "q": state["q"], "qd": state["qd"], "torque": state["tau_m"]}
+    columns |= {"wrench": state["w_sensor"], "theta": state["theta"]}
+    return mend(name, {what: np.asarray(each, dtype=np.float64) for what, each in columns.items()}, arm, [])
