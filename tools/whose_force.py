@@ -1,6 +1,6 @@
 """Counts the modules that estimate or decide whose force moves a free arm: `python -m tools.whose_force`.
 
-A line counts once for each 100 characters of it; blank lines count, too. Code that only moves to another of these modules counts as
+A line counts once for each 100 characters of it, a blank line once. Code that only moves to another of these modules counts as
 before.
 """
 
@@ -30,7 +30,7 @@ MODULES = tuple(
         )
     )
 )
-"""Those with rules, those with the model of what the rules weigh, and those that tell the result; one that is no more counts 0."""
+"""Those with rules, with the model of what the rules weigh, and those that tell the result. One that is gone counts nothing."""
 
 
 def count(source: str) -> int:
