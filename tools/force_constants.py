@@ -18,7 +18,6 @@ MODULES = (
     "pendant/sensor/odds.py",
     "pendant/guided/bias_follower.py",
     "pendant/guided/sensor_bias.py",
-    "pendant/guided/changing_wrench.py",
     "pendant/guided/unintended_motion.py",
     "pendant/guided/user_force.py",
     "pendant/guided/work.py",

@@ -10,7 +10,6 @@ from typing import NamedTuple
 from pendant.all_settings import Settings
 from pendant.events.event import Kind, Values
 from pendant.guided.bias_follower import SURE, Slack
-from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
@@ -57,7 +56,6 @@ class EndingWatch:
         joints: tuple[str, ...],
         rated: tuple[float, ...],
         held: float,
-        wrench: ChangingWrench,
     ) -> None:
         """
         Args:
@@ -66,14 +64,13 @@ class EndingWatch:
             joints: names, base to flange.
             rated: torque of each joint [N·m].
             held: configured payload without the tool, what may drop [kg].
-            wrench: what the flange sensor feels, and whether it changes.
         """
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
         self._since: EntryValues = reference(estimate, None)
         self._soft = SoftLimits(settings, estimate)
         self._on = settings.unexplained
-        self._unintended = UnintendedMotion(self._on, self._since, wrench)
+        self._unintended = UnintendedMotion(self._on, self._since)
         self._held = held
         self.suspect = False
         self.damping: Damping | None = None

@@ -5,7 +5,6 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.bias_follower import SURE, UNUSED
-from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.endings import EndingWatch
 from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
 from pendant.guided.pull import HandFelt, PullCauses, felt
@@ -16,7 +15,6 @@ from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import SingularityWatch
 from pendant.limits.soft_limits import Damping
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
-from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.limit_engine import Excess
 from pendant.tick.pose import ORIGIN, Vector, norm
@@ -48,7 +46,6 @@ class FreeArm:
         "_hung",
         "_operation",
         "_singularity",
-        "_wrench",
         "_zones",
         "caught",
         "damping",
@@ -86,8 +83,7 @@ class FreeArm:
         estimate = around.estimate
         self._bias, self._containment, self._zones = bias, containment, zones
         self._hand = UserForce(estimate, around.mean.mean(), bias.sensor.offset_force)
-        self._wrench = wrench = ChangingWrench(bias.sensor, ticks(settings.unexplained.time), settings.unexplained.force)
-        self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload, wrench=wrench)
+        self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
@@ -140,7 +136,6 @@ class FreeArm:
         baseline = bias.baseline if bias.used else None
         driven = around.shaken or self.caught or self._zones.pushing
         self.slack = slack = bias.slack(estimate) if bias.used else UNUSED
-        self._watch_wrench(around, settings, driven)
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force)
@@ -149,16 +144,6 @@ class FreeArm:
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)
-
-    def _watch_wrench(self, around: Surroundings, settings: Settings, driven: bool) -> None:
-        """One tick: whether a hand at the flange changes its wrench; something else may move the arm, or a hand on a link."""
-        bias, wrench, estimate = self._bias, self._wrench, around.estimate
-        x, y, z = estimate.F_link.tolist()
-        linked = norm((x, y, z)) >= settings.unexplained.force
-        if driven or linked or not (bias.used and settings.unexplained.sensor):
-            wrench.forget()
-        elif wrench.due():
-            wrench.step(bias.apart(estimate, around.mean.mean()), estimate)
 
     def _pressed(self, settings: Settings, tick: int) -> Excess | None:
         """At entry the sequence let so much pass; without it nobody knows what was felt then."""

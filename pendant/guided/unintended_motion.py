@@ -4,12 +4,11 @@ import math
 
 from pendant.events.event import Values
 from pendant.guided.bias_follower import SURE, Slack
-from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.settings import Unexplained
 from pendant.guided.user_force import UserForce
 from pendant.guided.work import ALL_SURE, NO_WRENCH, Forces, Shares, Work
 from pendant.limits.parameters import EntryValues
-from pendant.sensor.hand_model import LASTS, LIGHT
+from pendant.sensor.hand_model import LIGHT
 from pendant.sensor.odds import HALF, KNOWN, NOISE
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
@@ -60,7 +59,6 @@ class UnintendedMotion:
     """
 
     __slots__ = (
-        "_again",
         "_allowed",
         "_at_rest",
         "_caused",
@@ -69,31 +67,26 @@ class UnintendedMotion:
         "_no_fall",
         "_on",
         "_stretch",
-        "_there",
         "_ticks",
         "_whole",
-        "_wrench",
         "doubtful",
         "led",
         "moves",
     )
 
-    def __init__(self, on: Unexplained, since: EntryValues, wrench: ChangingWrench) -> None:
+    def __init__(self, on: Unexplained, since: EntryValues) -> None:
         """
         Args:
             on: settings.
             since: what held at entry.
-            wrench: what the flange sensor feels, and whether it changes.
         """
-        self._on, self._allowed, self._wrench = on, ticks(on.time), wrench
+        self._on, self._allowed = on, ticks(on.time)
         self._ticks = 0  # of the stretch
         self._caused = False  # a hand is felt in it, or a wall or another device drives the arm
         self._doubted = 0  # ticks of the doubt
         self._stretch = Way(since)
         self._at_rest = True  # before; nobody let it go while it moved
         self._whole = Way(since)  # since it has been at rest; without the flange sensor, since the payload may have fallen
-        self._there = 0  # ticks for which who was felt may be there still
-        self._again = False  # so that it goes as far again
         self._helped = 0.0  # so much of it was not doubtful [m]
         self._no_fall = KNOWN  # log of the odds that what is felt is no fall, against noise [nats]
         self.led = self.doubtful = self.moves = False
@@ -124,9 +117,6 @@ class UnintendedMotion:
             there = x * x + y * y + z * z >= least * least and hand.surely(least)
         else:
             there = estimate.joints_feel is JointsFeel.HAND
-        changes = use_wrench and self._wrench.changes
-        self._there = 0 if not use_wrench else LASTS if there or changes else max(self._there - 1, 0)
-        self._again = self._again and self._there > 0
         wrench, usual = NOTHING_FELT, norm(hand.usual)
         if use_wrench and usual < LIGHT + slack.force:
             wrench = (hand.usual, torque), (_certain(usual, slack.force), _certain(norm(torque), slack.torque))
@@ -134,12 +124,6 @@ class UnintendedMotion:
         speed = norm((vx, vy, vz))
         way = self._too_long(estimate, wrench, speed=speed, caused=driven or there, use_wrench=use_wrench)
         if way is None:
-            return None
-        if changes or (self._there > 0 and not self._again):
-            # Who was there a moment ago may be there: nothing helps, and it ends as far from here.
-            self._ticks = 0
-            self._begin(estimate)
-            self._again = self.doubtful = True
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
@@ -179,7 +163,7 @@ class UnintendedMotion:
             self._ticks, self.doubtful = 0, False
         elif self._lasts(HALF):
             self.doubtful = True
-        self.doubtful = self.doubtful or far or self._again
+        self.doubtful = self.doubtful or far
         self._doubted = self._doubted + 1 if self.doubtful else 0
         # Without help an arm that nobody leads may come to rest first.
         waits = self._doubted < HALF * self._allowed
@@ -190,8 +174,6 @@ class UnintendedMotion:
         whole, away = self._whole, self._on.distance
         if not self._at_rest:
             return None, False
-        if self._wrench.turned:
-            self._begin(estimate)
         whole.work.step(estimate, *wrench)
         length = whole.length(estimate)
         paid = whole.work.paid
@@ -230,14 +212,13 @@ class UnintendedMotion:
         """From here on an arm that was at rest goes on its own, if nobody leads it."""
         self._helped = 0.0
         self._whole.begin(estimate)
-        self._wrench.begin_way()
 
     def _lasts(self, share: float) -> bool:
         """Nobody has led the arm for this share of the time that it has."""
         return self._stretch.work.lasts(round(share * self._allowed))
 
     def _end_doubt(self) -> None:
-        self._again = self.doubtful = False
+        self.doubtful = False
         self._doubted = 0
 
 

@@ -7,9 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
-from pendant.guided.changing_wrench import ChangingWrench
 from pendant.sensor.sensor_spec import SensorSpec
-from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 
 N = 6
@@ -126,9 +124,3 @@ def _power(speeds: float | list[float], torques: float | list[float]) -> float:
 
 def _wrench(linear: float | list[float], angular: float | list[float]) -> NDArray[np.float64]:
     return _zeros(6) if linear == angular == 0.0 else np.array(_listed(linear, 3) + _listed(angular, 3))
-
-
-def watched() -> ChangingWrench:
-    """What tells whether the wrench changes, as free-drive has it; nothing was felt yet."""
-    on = Settings().unexplained
-    return ChangingWrench(SENSOR, ticks(on.time), on.force)

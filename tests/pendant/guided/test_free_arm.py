@@ -302,41 +302,6 @@ def test_of_a_sensor_that_is_not_used_all_may_be_wrong() -> None:
     assert with_it.arm.slack == UNUSED
 
 
-def drifting(tick: int, force: float, speed: float = 0.1, **more: Any) -> Estimate:
-    """The arm moves, and the sensor feels this along x."""
-    return estimate(position=[speed * tick * TICK, 0.0, 0.0], speed=speed, force=force, qd=speed, **more)
-
-
-@pytest.mark.parametrize(
-    ("why", "changes"),
-    [
-        ("it changes", True),
-        ("the sensor is not watched", False),
-        ("a wall or shaking moves it", False),
-        ("a hand is on a link", False),
-        ("less than a hand is on a link", True),
-    ],
-)
-def test_a_change_of_the_wrench_is_a_hands_where_nothing_else_moves_the_arm(why: str, changes: bool) -> None:
-    free = Free(unexplained__motion=False, unexplained__time=0.3, unexplained__sensor=why != "the sensor is not watched")
-    link = {"a hand is on a link": [-1.01, 0.0, 0.0], "less than a hand is on a link": [0.99, 0.0, 0.0]}.get(why, 0.0)
-    for ticks, force in ((300, 0.0), (100, 9.0)):
-        free.during(ticks, drifting(0, force, link=link), shaken=why == "a wall or shaking moves it")
-    assert free.arm._wrench.changes is changes
-
-
-@pytest.mark.parametrize(("turns", "ends"), [(0, True), (100, False), (400, True)])
-def test_a_hand_that_turns_round_leads_an_arm_whose_sensor_may_have_drifted_by_more(turns: int, ends: bool) -> None:
-    """FD-19: of 5 N after ten minutes. It pushes the other way every so many ticks; 0: never."""
-    free = Free(unexplained__time=0.3)
-    free.tick = 300_000
-    told = free.during(60, estimate())
-    for tick in range(1, 700):
-        told += free.see(drifting(tick, -5.0 if turns and tick // turns % 2 else 5.0))
-    assert [event.kind for event in told] == ([Kind.STOPPED_MOTION] * len(told))
-    assert bool(told) is ends
-
-
 @pytest.mark.parametrize(
     ("why", "force", "pressed"),
     [

@@ -14,7 +14,7 @@ from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import Vector
-from tests.pendant.estimates import SENSOR, watched
+from tests.pendant.estimates import SENSOR
 from tests.pendant.guided.test_unintended_motion import AWAY, PAYS, Bench, at, creep
 
 ALLOWED = ticks(Settings().unexplained.time)
@@ -25,7 +25,7 @@ class Felt:
 
     def __init__(self) -> None:
         start = at(0.0, 0.0)
-        self.alone = UnintendedMotion(Settings().unexplained, reference(start, None), watched())
+        self.alone = UnintendedMotion(Settings().unexplained, reference(start, None))
         self.hand = UserForce(start, (0.0,) * 6, SENSOR.offset_force)
 
     def see(self, value: Estimate, usual: Vector = (0.0, 0.0, 0.0), slack: Slack | None = None) -> Values | None:

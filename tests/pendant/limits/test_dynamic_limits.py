@@ -16,7 +16,7 @@ from pendant.limits.dynamic_limits import CREEPING, WHOLE, DynamicLimits, Shares
 from pendant.limits.parameters import ZEROS
 from pendant.tick.estimate import Estimate
 from pendant.tick.state import state_of
-from tests.pendant.estimates import MOVES, SENSOR, estimate, watched
+from tests.pendant.estimates import MOVES, SENSOR, estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, Bench
 
 STILL = estimate()
@@ -161,7 +161,7 @@ def ended(now: Estimate, ticks: int = 1, force: list[float] | None = None, **cha
     use = settings(soft__hard=True, unexplained__motion=False, unexplained__payload=False, **changes)
     first = estimate()
     operation, hand = (
-        EndingWatch(first, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0, wrench=watched()),
+        EndingWatch(first, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0),
         UserForce(first, ZEROS, SENSOR.offset_force),
     )
     for _ in range(ticks):
@@ -238,7 +238,7 @@ def test_the_hands_force_lowers_the_limit_on_speed_and_its_torque_that_on_joint_
 
 def test_without_the_flange_sensor_no_torque_lowers_anything() -> None:
     use, now = settings(soft__hard=True, soft__pushed=True, soft__torque_share=2.0), estimate(qd=2.9, torque=9.0)
-    operation = EndingWatch(now, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0, wrench=watched())
+    operation = EndingWatch(now, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0)
     assert operation.step(now, UserForce(now, ZEROS, SENSOR.offset_force), baseline=None, driven=False) is None
     assert operation.step(now, UserForce(now, ZEROS, SENSOR.offset_force), baseline=ZEROS, driven=False) is not None
 
@@ -246,7 +246,7 @@ def test_without_the_flange_sensor_no_torque_lowers_anything() -> None:
 def test_what_the_sensor_was_off_before_entry_is_no_torque_of_the_hand() -> None:
     now = estimate(qd=2.9, torque=[3.0, 0.0, 4.0])
     use = settings(soft__hard=True, soft__pushed=True, soft__torque_share=2.0)
-    operation = EndingWatch(now, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0, wrench=watched())
+    operation = EndingWatch(now, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0)
     assert (
         operation.step(now, UserForce(now, ZEROS, SENSOR.offset_force), baseline=(0.0, 0.0, 0.0, 3.0, 0.0, 4.0), driven=False)
         is None

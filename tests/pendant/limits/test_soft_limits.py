@@ -15,7 +15,7 @@ from pendant.limits.dynamic_limits import WHOLE
 from pendant.limits.parameters import ZEROS
 from pendant.limits.soft_limits import SoftLimits, hard
 from pendant.tick.state import state_of
-from tests.pendant.estimates import SENSOR, estimate, watched
+from tests.pendant.estimates import SENSOR, estimate
 
 STILL = estimate()
 
@@ -125,7 +125,7 @@ def test_they_never_rise_above_the_hard_ones_nor_fall_below_what_is_set(ways: li
 def ended(speed: float, **changes: float | bool) -> Ending | None:
     settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
     now = estimate(load_mass=4.0, v_tcp=speed)
-    operation = EndingWatch(now, settings, joints=tuple("abcdef"), rated=(100.0,) * 6, held=0.0, wrench=watched())
+    operation = EndingWatch(now, settings, joints=tuple("abcdef"), rated=(100.0,) * 6, held=0.0)
     assert operation.damping is None
     found = operation.step(now, UserForce(now, ZEROS, SENSOR.offset_force), baseline=ZEROS, driven=False)
     assert operation.damping is not None
