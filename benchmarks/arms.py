@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from app.files.library import load_arm, robots
 from sim.arm.arm_file import Arm, Channels, SensorNumbers
-from sim.sensing.calibration import ripple_torque
+from sim.arm.joint_constants import ripple_torque
 
 USUAL = "ur5e"
 """The arm whose results are in docs/results."""
@@ -106,4 +106,4 @@ def _friction(arm: Arm, part: Part, speed: float) -> float:
 
 def missed(name: str) -> float:
     """What joints may miss of a torque where no flange sensor tells a hand: the ripple of their encoders, at most [N·m]."""
-    return 0.0 if senses(name) else float(ripple_torque(load(name).transmissions).max())
+    return 0.0 if senses(name) else float(ripple_torque(load(name)).max())

@@ -146,7 +146,8 @@ def _drift(arm: Arm) -> list[Problem]:
     if sensor is None or sensor.drift is None:
         return []
     found: list[Problem] = []
-    for name, error, channels in zip(("force", "torque"), most(sensor.drift), (sensor.force, sensor.torque), strict=True):
+    largest = most(arm.accuracy, sensor.drift)
+    for name, error, channels in zip(("force", "torque"), largest, (sensor.force, sensor.torque), strict=True):
         if error >= channels.range:
             allowed = f"expected it and {BOUND:g} times walk_{name} to stay below the sensor's range, {channels.range:g}"
             found.append((f"sensors.force_torque.drift.{name}", getattr(sensor.drift, name), allowed))

@@ -74,9 +74,12 @@ class Simulation:
     def __init__(self, arm: Arm, scenario: Scenario, settings: Settings, step: Step | None = None) -> None:
         self.arm, self.scenario = arm, scenario
         errors, noise, walk = np.random.default_rng(scenario.seed).spawn(3)
-        self.calibration = calibration.nominal(arm) if scenario.mismatch == "nominal" else calibration.draw(arm, errors)
-        wrench = arm.sensors.force_torque
-        drifts = None if wrench is None or scenario.mismatch == "nominal" else wrench.drift
+        wrench, mismatch = arm.sensors.force_torque, scenario.mismatch
+        if mismatch == "nominal":
+            self.calibration, drifts = calibration.nominal(arm), None
+        else:
+            self.calibration = calibration.draw(arm, errors, 1.0 if mismatch == "on" else mismatch)
+            drifts = None if wrench is None else wrench.drift
         drift = None if drifts is None else SensorDrift(drifts, self.calibration, walk)
         self.plant = Plant(arm, scenario, step)
         self.sensors = Sensors(arm, self.calibration, noise, drift)

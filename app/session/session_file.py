@@ -16,7 +16,7 @@ from pendant.equipment.tools import MOST as MOST_TOOLS
 from pendant.program.steps import Program
 from pendant.settings.bounds import MOST_JOINTS, MOST_OBJECTS, MOST_STEPS, Angle, Text
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import AnyObject, Load, ToolModel
+from sim.arm.scenario import AnyObject, Load, Mismatch, ToolModel
 
 Posture = Annotated[list[Angle], Meta(max_length=MOST_JOINTS)]
 Claims = Annotated[list[Text], Meta(max_length=MOST_STEPS)]
@@ -37,7 +37,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     settings: dict[str, float | bool | str] = {}  # overrides, by dotted name
     features: dict[str, Literal["on", "off"]] = {}  # by requirement id
     seed: Annotated[int, Meta(ge=0, le=2**31 - 1)] = 0
-    mismatch: Literal["on", "nominal"] = "on"
+    mismatch: Mismatch = "on"  # errors as large as the arm's file states, none, or so many times as large
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     self_contact: bool = False  # the tool can touch the arm's own links (CD-2)
     world: World | Text = []  # objects, or the name of a bundled world

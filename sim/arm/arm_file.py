@@ -174,6 +174,42 @@ class SensorNumbers(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_
     gyro: Channels | None = None  # [rad/s], at both faces
 
 
+Ratio = Annotated[float, Meta(ge=0.0, le=0.3)]  # of an error to what is right: three times it still leaves a positive number
+
+
+class Accuracy(Sourced, frozen=True):
+    """What the arm's constants may be wrong by, at most, each way; beside `sensors.encoders.ripple` all that is told of errors.
+
+    The controller reads it as bounds of errors that it does not know; the simulation draws an arm's errors evenly within them.
+    """
+
+    motor_constant: Ratio  # torque of a motor for its current
+    stiffness: Ratio  # of a transmission
+    rotor_inertia: Ratio
+    link_mass: Ratio
+    link_centre: NotNegative  # of a link's centre of mass, each axis [m]
+    force_offset: NotNegative  # zero of the flange sensor when it is cold, each axis [N]
+    torque_offset: NotNegative  # the same [N·m]
+    wrench_gain: Ratio  # of the flange sensor, each channel
+    wrench_cross_talk: Ratio  # share of its range that a full channel shows in all five others together
+
+
+ASSUMED_ACCURACY = Accuracy(
+    status="assumed",
+    source="The arm's file says nothing; as of the UR5e.",
+    motor_constant=0.03,
+    stiffness=0.20,
+    rotor_inertia=0.10,
+    link_mass=0.02,
+    link_centre=0.003,
+    force_offset=4.0,
+    torque_offset=0.3,
+    wrench_gain=0.01,
+    wrench_cross_talk=0.01,
+)
+"""Of an arm whose file does not state it."""
+
+
 class Outline(Sourced, frozen=True):
     """The housings, for pictures. Link k starts at the seam of joint k and ends at the seam of joint k + 1."""
 
@@ -211,6 +247,7 @@ class Arm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     frictions: Frictions
     thermals: Thermals
     sensors: SensorNumbers
+    accuracy: Accuracy = ASSUMED_ACCURACY
     outline: Outline
     shapes: Annotated[list[Capsule], Meta(max_length=60)]
 

@@ -146,6 +146,10 @@ AnyPart = FreeBox | FreeCylinder
 AnyObject = BoxObject | Plane | Pad | SnapFit | TwoFrictions | Moving | FreeBox | FreeCylinder
 
 
+Mismatch = Literal["on", "nominal"] | Annotated[float, Meta(gt=0.0, le=3.0)]
+"""Errors of the controller's constants and of the sensors: as large as the arm's file states, none, or so many times as large."""
+
+
 class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All that a simulation starts from, apart from the arm and the settings."""
 
@@ -160,7 +164,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     self_contact: bool = False  # the tool can touch the arm's own links (CD-2)
     seed: int = 0
-    mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)
+    mismatch: Mismatch = "on"
 
 
 def table(scenario: Scenario) -> list[ToolModel]:

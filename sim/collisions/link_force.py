@@ -33,7 +33,7 @@ def link_force(models, elbow):
     change = np.empty(CAUSES)
     for i in range(n):
         residual, causes, rest = momentum.residual[i], errors.causes[i], errors.rest[i]
-        unexplained = noise(momentum.doubt[i], causes[0])
+        unexplained = noise(errors, momentum.doubt[i], causes[0])
         left = left_over(errors.shares[i], residual, causes)
         size = beyond(errors, i, (left, causes), (unexplained, SURE))
         for k in range(CAUSES):

@@ -1,1 +1,1 @@
-"""The control laws of the modes. Uses arm/, compiled/, estimation/, motion/, rigid_body/, sensing/."""
+"""The control laws of the modes. Uses arm/, compiled/, estimation/, motion/, rigid_body/."""

@@ -19,12 +19,12 @@ from pendant.limits.axis_locks import AxisLocks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import JointConstants
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.control.feedback import BANDWIDTH, DAMPING_RATIO
 from sim.control.pose_constraint import constraint
 from sim.rigid_body.cholesky import factor, solve
-from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -56,15 +56,15 @@ class AxisConstraint:
 
     Args:
         arm: the arm's numbers.
-        calibration: error of the constants that the controller uses.
+        constants: those that the controller uses.
         tcp: tool centre point in F (3,) [m].
         R_FT: its orientation in F (3, 3).
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, tcp: Array, R_FT: Array) -> None:
+    def __init__(self, arm: Arm, constants: JointConstants, tcp: Array, R_FT: Array) -> None:
         spring = arm.transmissions
-        stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
-        rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
+        stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * constants.stiffness
+        rotor = np.array(arm.motors.rotor_inertia) * constants.rotor_inertia
         n = arm.n
         self._record = record(
             compliance=(n,),

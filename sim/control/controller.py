@@ -8,6 +8,7 @@ from pendant.decision import Decision
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import JointConstants
 from sim.control.feed_forward import FeedForward
 from sim.control.feedback import Beginning, Feedback, TorqueFeedback
 from sim.control.free_drive_law import FreeDriveLaw
@@ -16,7 +17,6 @@ from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.estimation.transmission_torque import DEFLECTION, DYNAMICS, MOTOR
 from sim.motion.references import STANDING, References
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -31,19 +31,19 @@ class Controller:
 
     Args:
         arm: the arm's numbers.
-        calibration: error of the constants that the controller uses.
+        constants: those that the controller uses.
         dynamics: the controller's rigid model.
         tcp: tool centre point in F (3,) [m].
         R_FT: its orientation in F (3, 3).
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
-        self.references = References(arm, calibration, dynamics, tcp=tcp, R_FT=R_FT)
-        self.feed_forward = FeedForward(arm, calibration, dynamics)
+    def __init__(self, arm: Arm, constants: JointConstants, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
+        self.references = References(arm, constants, dynamics, tcp=tcp, R_FT=R_FT)
+        self.feed_forward = FeedForward(arm, constants, dynamics)
         self.torque_feedback = TorqueFeedback(arm.n)
-        self.feedback = Feedback(arm, calibration, dynamics, tcp)
-        self.free_drive = FreeDriveLaw(arm, calibration, dynamics, tcp=tcp, R_FT=R_FT)
-        self.motor = MotorController(arm, calibration)
+        self.feedback = Feedback(arm, constants, dynamics, tcp)
+        self.free_drive = FreeDriveLaw(arm, constants, dynamics, tcp=tcp, R_FT=R_FT)
+        self.motor = MotorController(arm, constants)
         self._dynamics = dynamics
         self._law: Law | None = None
         self._nothing = np.zeros(arm.n)

@@ -10,12 +10,12 @@ from pendant.motion.script_requests import DirectTorque
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import JointConstants
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.adaptive_friction import AdaptiveFriction, slide
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ class FeedForward:
         tau_J: desired transmission torque of the last call (n,) [N·m].
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics) -> None:
+    def __init__(self, arm: Arm, constants: JointConstants, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
         self._rated = np.array(arm.limits.torque)
         spring = arm.transmissions
@@ -61,8 +61,8 @@ class FeedForward:
             friction=(arm.n,),  # that is fed forward
         )
         own = self._record[0]
-        own["rotor"] = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
-        own["stiffness"] = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
+        own["rotor"] = np.array(arm.motors.rotor_inertia) * constants.rotor_inertia
+        own["stiffness"] = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * constants.stiffness
         own["presliding"] = arm.frictions.presliding
         self._speed = own["speed"]
         self._smooth = AdaptiveFriction(arm, 0.0)  # joints without friction: nothing is fed against it

@@ -12,11 +12,11 @@ from pendant.all_settings import JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import JointConstants
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.motion.moves import DELAY, Reference
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -108,13 +108,13 @@ class Feedback:
     """
 
     def __init__(
-        self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, *, bandwidth: float = BANDWIDTH
+        self, arm: Arm, constants: JointConstants, dynamics: Dynamics, tcp: Array, *, bandwidth: float = BANDWIDTH
     ) -> None:
         spring = arm.transmissions
-        rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
+        rotor = np.array(arm.motors.rotor_inertia) * constants.rotor_inertia
         omega = 2.0 * math.pi * bandwidth
         stiffness = rotor * omega**2
-        compliance = 1.0 / ((np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness)
+        compliance = 1.0 / ((np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * constants.stiffness)
         swing = np.sqrt(1.0 / (compliance * _heaviest(arm, dynamics)))
         integral_gain = TICK * stiffness / np.maximum(INTEGRAL_TIME, SLOWER / swing)
         damping = 2.0 * DAMPING_RATIO * rotor * omega

@@ -13,6 +13,7 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Phase
 from pendant.tick.pose import ORIGIN, Vector
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import JointConstants
 from sim.compiled.kernel import kernel
 from sim.control.active_damping import ActiveDamping
 from sim.control.axis_constraint import AxisConstraint
@@ -22,7 +23,6 @@ from sim.control.shaker import Shaker
 from sim.control.singularity import Singularity
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -56,21 +56,21 @@ class FreeDriveLaw:
         singularity: how near the arm is to one.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
+    def __init__(self, arm: Arm, constants: JointConstants, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         """
         Args:
             arm: the arm's numbers.
-            calibration: error of the constants that the controller uses.
+            constants: those that the controller uses.
             dynamics: the controller's rigid model, whose recursion has been run with the tick's angles.
             tcp: tool centre point in F (3,) [m].
             R_FT: its orientation in F (3, 3).
         """
         self._gravity, self._elbow = dynamics.recursion.at_rest, arm.chain.elbow
         n = arm.n
-        rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
+        rotor = np.array(arm.motors.rotor_inertia) * constants.rotor_inertia
         self._damping = ActiveDamping(np.array(arm.limits.torque), rotor, arm.chain.elbow)
         self._balancing = Balancing(np.array(arm.limits.torque), rotor, arm.payload)
-        self._constraint = AxisConstraint(arm, calibration, tcp, R_FT)
+        self._constraint = AxisConstraint(arm, constants, tcp, R_FT)
         self.singularity = Singularity(rotor)
         self._shaker = Shaker(rotor[-1], arm.limits.torque[-1])
         self.share = COMPENSATED

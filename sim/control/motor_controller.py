@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import JointConstants
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -22,9 +22,9 @@ class MotorController:
         excess: what was asked beyond the last command (n,) [N·m], 0 where nothing was cut: it lets nothing wind up behind it.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration) -> None:
+    def __init__(self, arm: Arm, constants: JointConstants) -> None:
         motors = arm.motors
-        per_torque = 1.0 / (np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant)
+        per_torque = 1.0 / (np.array(motors.torque_constant) * np.array(motors.gear) * constants.motor_constant)
         # The output's torque limit, with room for the friction that the motor has to overcome as well.
         friction = np.array([row[-1] for row in arm.frictions.torque])
         largest = np.minimum(np.array(motors.current) / per_torque, np.array(arm.limits.torque) + friction)

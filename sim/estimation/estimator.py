@@ -10,6 +10,7 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
+from sim.arm.joint_constants import JointConstants
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.estimation.joint_tracking import (
     SPEED_BANDWIDTH,
@@ -28,7 +29,6 @@ from sim.flange.flange_forces import FlangeForces
 from sim.flange.whose_force import WhoseForce
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import Calibration
 from sim.sensing.sensors import Sample
 
 Array = NDArray[np.float64]
@@ -45,24 +45,24 @@ class Estimator:
 
     Args:
         arm: the arm's numbers.
-        calibration: error of the constants that the controller uses.
+        constants: those that the controller uses.
         dynamics: the controller's rigid model, which holds the configured payload.
         tcp: tool centre point in F (3,) [m].
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
+    def __init__(self, arm: Arm, constants: JointConstants, dynamics: Dynamics, tcp: Array) -> None:
         n, motors, spring = arm.n, arm.motors, arm.transmissions
         self._dynamics, self._tcp = dynamics, tcp
-        stiffness = np.array(spring.stiffness) * calibration.stiffness
-        slip_stiffness = np.array(spring.hysteresis_stiffness) * calibration.stiffness
-        torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant
-        stiffening = np.array(spring.stiffening) * calibration.stiffness
+        stiffness = np.array(spring.stiffness) * constants.stiffness
+        slip_stiffness = np.array(spring.hysteresis_stiffness) * constants.stiffness
+        torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * constants.motor_constant
+        stiffening = np.array(spring.stiffening) * constants.stiffness
         self._record = joint_record(n)
         own = self._own = self._record[0]
         own["most"] = motors.current
         own["torque_constant"], own["stiffness"], own["stiffening"] = torque_constant, stiffness, stiffening
         own["damping"], own["slip_stiffness"], own["slip_yield"] = spring.damping, slip_stiffness, spring.hysteresis_yield
-        own["rotor"] = np.array(motors.rotor_inertia) * calibration.rotor_inertia
+        own["rotor"] = np.array(motors.rotor_inertia) * constants.rotor_inertia
         self.friction = AdaptiveFriction(arm)
         self.transmission = TransmissionTorque(arm, dynamics.mass(np.array(arm.chain.home)).diagonal())
         self._use: JointControl | None = None

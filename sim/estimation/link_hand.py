@@ -44,7 +44,6 @@ from sim.estimation.transmission_torque import CONTACT
 from sim.flange.flange_forces import best_force
 from sim.motion.references import STANDING
 from sim.rigid_body.newton_euler import NewtonEuler
-from sim.sensing.calibration import MOTOR_CONSTANT
 
 Array = NDArray[np.float64]
 
@@ -221,9 +220,9 @@ def _feel(own, known, told, when) -> bool:
     for i in range(own.torque.size):
         for k in range(1 + CAUSES):
             change[k] = errors.felt[i, k] - felt[i, k]
-        rest = noise(momentum.doubt[i], change[1])
+        rest = noise(errors, momentum.doubt[i], change[1])
         if not by_deflection[i]:
-            rest += (MOTOR_CONSTANT * change[1]) ** 2
+            rest += (errors.motor_constant * change[1]) ** 2
         for k in range(ZERO):
             lever = errors.felt[i, 2 + k]
             change[0] += drifts[k] * lever

@@ -19,16 +19,16 @@ flange origin, which moves with v, and its centre at c from there,
 with the same lag as the observer's. Encoders' noise alternates, so the mean of some ticks is looked at.
 
 Most of the time what is felt is neither, and the question is who may move the arm. What a joint tells since entry is wrong by no
-more than the ripple of its encoder, and by the share that its stiffness is not known of what its gear bears more or less:
+more than the ripple of its encoder, and by the share a that its stiffness may be wrong by of what its gear bears more or less:
 
-    |error| <= ripple + STIFFNESS |model - model at entry| + |J' s|.
+    |error| <= ripple + a |model - model at entry| + |J' s|.
 
 The last term is of a payload that was told wrong and accepted: what it weighs more or less was there at entry, but what it takes
 to be accelerated, s, was not. Its mass is that whose weight explains tau_ext at entry best, and no more than the arm may carry.
 Where the motor tells a torque, without the deflection, an error is larger than RARELY standard deviations once in a thousand.
 
 Three cases follow. Where the change of every joint is within its error, nothing is felt. Where it differs from J' p by no more
-than its error and STIFFNESS |J' p|, the payload may have fallen, unless all of J' p is within the errors, too: a payload that no
+than its error and a |J' p|, the payload may have fallen, unless all of J' p is within the errors, too: a payload that no
 joint would miss does not move an arm that its friction holds. Else a hand is there.
 """
 
@@ -42,6 +42,7 @@ from pendant.sensor.odds import HALF, RARELY, SUSPECTED
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import ripple_torque
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.momentum_observer import MomentumObserver, follow
@@ -51,7 +52,6 @@ from sim.estimation.transmission_torque import DYNAMICS, MOTOR, TransmissionTorq
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.wrench_hypotheses import LONGEST
 from sim.rigid_body.newton_euler import NewtonEuler, cross, turned, turned_back
-from sim.sensing.calibration import STIFFNESS, ripple_torque
 
 Array = NDArray[np.float64]
 
@@ -88,6 +88,7 @@ class PayloadFall:
         """
         self._rigid, self._joints, self._wrench, self._most = rigid.record, joints, wrench, arm.payload
         self._record = record(
+            stiffness=(),  # what the gears' may be wrong by, relative to it
             before=(arm.n,),  # tau_ext at entry [N·m]
             entry=(arm.n,),  # what the model wants the gears to bear there [N·m]
             ripple=(arm.n,),  # what the encoder alone may change a torque by [N·m]
@@ -107,8 +108,8 @@ class PayloadFall:
         )
         self._courses = courses()
         own = self._own = self._record[0]
-        own["ripple"] = ripple = ripple_torque(arm.transmissions)
-        own["noise"] = ripple @ ripple
+        own["ripple"] = ripple = ripple_torque(arm)
+        own["noise"], own["stiffness"] = ripple @ ripple, arm.accuracy.stiffness
         self.torque: Array = own["hand"]
         self.certain: Array = own["certain"]
         self._begun = self._blind = False
@@ -168,7 +169,7 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
     change = left = along = size = now = whole = 0.0
     nothing = falls = unmissed = True
     for i in range(q.size):
-        wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + STIFFNESS * abs(bears[i] - own.entry[i])
+        wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + own.stiffness * abs(bears[i] - own.entry[i])
         own.latest[place, 0, i], own.latest[place, 1, i], swings = external[i] - own.before[i], 0.0, 0.0
         for k in range(6):
             own.latest[place, 1, i] += jacobian[k, i] * own.needed[1, k]
@@ -186,12 +187,12 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
         along += more * lost
         size += lost * lost
         nothing = nothing and abs(more) <= wrong
-        falls = falls and abs(more - lost) <= wrong + STIFFNESS * abs(lost)
+        falls = falls and abs(more - lost) <= wrong + own.stiffness * abs(lost)
         unmissed = unmissed and abs(lost) <= wrong
     share = now / whole if whole > 0.0 else 0.0
     add(courses, share)
     enough = change > own.noise
-    least = STIFFNESS**2 * change
+    least = own.stiffness**2 * change
     own.lasts = own.lasts + 1 if enough and left < least else 0
     _judge(own, courses, enough and share > HALF and size > 0.0 and change - along**2 / size < least)
     feels = NOTHING if nothing else FALL if falls and not unmissed else HAND
@@ -210,7 +211,7 @@ def _judge(own, courses, comes) -> None:
     fits, first = own.lasts >= LONGEST - MEAN, own.unlike == SEEN
     if first and (fits or comes):
         by_hand, at_all, size, level = came(courses)
-        sure = by_hand <= -SURE and abs(level - 1.0) <= STIFFNESS
+        sure = by_hand <= -SURE and abs(level - 1.0) <= own.stiffness
         own.fell = at_all >= SUSPECTED and size >= HALF and (by_hand < 0.0 if fits else sure)
     if fits or (first and own.fell):
         own.unlike = 0

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import ripple_torque
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.transmission_torque import CONTACT, SOFTEST, STIFFEST
-from sim.sensing.calibration import FORCE_OFFSET, LINK_MASS, MOTOR_CONSTANT, STIFFNESS, TORQUE_OFFSET, ripple_torque
+from sim.estimation.transmission_torque import CONTACT, stiffness_range
 
 Array = NDArray[np.float64]
 
@@ -58,6 +58,10 @@ class TorqueErrors:
         n = arm.n
         size = ZERO + OWN * n
         self.record = record(
+            motor_constant=(),  # what it may be wrong by, relative to it
+            link_mass=(),  # the same
+            softest=(),  # springs, against what is believed, at least
+            stiffest=(),
             causes=(n, CAUSES),
             shares=(n, CAUSES),
             misfit=(n, CAUSES),
@@ -74,11 +78,13 @@ class TorqueErrors:
         )
         own = self._own = self.record[0]
         self.causes, self.shares, self.misfit = own["causes"], own["shares"], own["misfit"]
-        ripple = ripple_torque(arm.transmissions)
-        most, walk = own["most"], own["walk"]
-        most[:3], most[3:ZERO], walk[:3], walk[3:ZERO] = FORCE_OFFSET, TORQUE_OFFSET, FORCE_WALK, TORQUE_WALK
+        ripple = ripple_torque(arm)
+        most, walk, accuracy = own["most"], own["walk"], arm.accuracy
+        own["motor_constant"], own["link_mass"] = accuracy.motor_constant, accuracy.link_mass
+        own["softest"], own["stiffest"] = stiffness_range(accuracy.stiffness)
+        most[:3], most[3:ZERO], walk[:3], walk[3:ZERO] = accuracy.force_offset, accuracy.torque_offset, FORCE_WALK, TORQUE_WALK
         most[ZERO:], walk[ZERO:] = np.repeat(ripple, OWN), np.repeat(RIPPLE_WALK * ripple, OWN)
-        most[ZERO::OWN], walk[ZERO::OWN] = STIFFNESS, STIFFNESS_WALK
+        most[ZERO::OWN], walk[ZERO::OWN] = accuracy.stiffness, STIFFNESS_WALK
         walk[:] = walk * walk * TICK
         np.fill_diagonal(own["covariance"], most * most / 3.0)  # of a uniform error
 
@@ -125,8 +131,8 @@ def look(errors, rigid, borne, state) -> None:
             shares[k] = own.known[at]
             misfit[k] = min(own.most[at], SURE * np.sqrt(own.covariance[at, at]))
         if not by_deflection[i]:
-            shares[0], misfit[0] = 0.0, MOTOR_CONSTANT
-        misfit[0] += LINK_MASS + (0.0 if with_sensor else CARRIED)
+            shares[0], misfit[0] = 0.0, own.motor_constant
+        misfit[0] += own.link_mass + (0.0 if with_sensor else CARRIED)
 
 
 @kernel
@@ -138,9 +144,9 @@ def _place(i, k):
 
 
 @kernel
-def noise(doubt, borne):
+def noise(own, doubt, borne):
     """Variance of what is not explained of a joint: of links' masses, which go with what is borne, and of all else [N²·m²]."""
-    masses = LINK_MASS * borne
+    masses = own.link_mass * borne
     return doubt * doubt + masses * masses
 
 
@@ -216,7 +222,7 @@ def touched(errors, residual, doubt, by_deflection) -> bool:
         for k in range(CAUSES):
             own.felt[i, 1 + k] += SMOOTH * (own.causes[i, k] - own.felt[i, 1 + k])
         if by_deflection[i] and not found:
-            rest = noise(doubt[i], own.causes[i, 0])
+            rest = noise(own, doubt[i], own.causes[i, 0])
             for k in range(1 + CAUSES):
                 change[k] = own.felt[i, k] - own.rest[i, k]
             found = _feels(own, i, own.felt[i], rest) or _feels(own, i, change, rest)
@@ -236,7 +242,7 @@ def learn(errors, residual, doubt, by_deflection) -> None:
     i = (own.joint[at - 1] + 1) % n
     own.joint[at], own.at, own.count = i, (at + 1) % WAIT, min(own.count + 1, WAIT)
     waiting = own.waiting[at]
-    waiting[0], waiting[1], waiting[2:] = residual[i], noise(doubt[i], own.causes[i, 0]), own.causes[i]
+    waiting[0], waiting[1], waiting[2:] = residual[i], noise(own, doubt[i], own.causes[i, 0]), own.causes[i]
     if not by_deflection[i]:
         waiting[2:] = 0.0  # it tells nothing
 
@@ -265,4 +271,4 @@ def _learn(own, i, felt, n) -> None:
             P[a, b] -= gains[a] * gains[b] / spread
             P[b, a] = P[a, b]
     gear = ZERO + OWN * i
-    own.known[gear] = min(max(own.known[gear], SOFTEST), STIFFEST)
+    own.known[gear] = min(max(own.known[gear], own.softest), own.stiffest)

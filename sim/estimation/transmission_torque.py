@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import ripple_torque
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.sensing.calibration import LINK_MASS, MOTOR_CONSTANT, STIFFNESS, ripple_torque
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,6 @@ MODEL_FLOOR = 0.004  # what the rigid model misses at least, relative to the tor
 ACCELERATION_FLOOR = 0.1  # deviation of the output's acceleration at rest [rad/s²]
 ACCELERATION_SHARE = 0.15  # and of the largest acceleration lately: links swing on their springs faster than the filter sees
 LATELY = math.exp(-TICK / 0.3)
-SOFTEST, STIFFEST = 1.0 / (1.0 + STIFFNESS) - 1.0, 1.0 / (1.0 - STIFFNESS) - 1.0  # the springs, against what is believed
 STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
 OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]
 RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
@@ -33,6 +32,11 @@ CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque l
 SLOWLY = TICK / 0.3  # where two ways differ for longer than this [s], it is the deflection's error
 REMEMBERED = 1500  # ticks of motion over which it is remembered how much they differed; before so many it does not count
 SETTLE_TICKS = 100  # after a contact, before its end is believed
+
+
+def stiffness_range(accuracy: float) -> tuple[float, float]:
+    """Relative error of the stiffness that is believed, least and most, where it is known to the share `accuracy`."""
+    return 1.0 / (1.0 + accuracy) - 1.0, 1.0 / (1.0 - accuracy) - 1.0
 
 
 class Rubbing(NamedTuple):
@@ -71,8 +75,13 @@ class TransmissionTorque:
         """`inertia` (n,) is what a joint usually has to move [kg·m²]."""
         n = arm.n
         limit = np.array(arm.limits.torque)
-        ripple = ripple_torque(arm.transmissions)
+        ripple = ripple_torque(arm)
         self.record = record(
+            motor_constant=(),  # what it may be wrong by, relative to it
+            stiffness=(),  # the same
+            link_mass=(),  # the same
+            softest=(),  # springs, against what is believed, at least
+            stiffest=(),
             floor=(n,),  # of the model's deviation [N·m]
             ripple=(n,),  # of the deflection's offset [N·m]
             least=(n,),  # difference that may be a contact [N·m]
@@ -96,6 +105,9 @@ class TransmissionTorque:
             quiet="i8",  # ticks since some joint felt a contact, at most `SETTLE_TICKS`
         )
         own = self._own = self.record[0]
+        for name in ("motor_constant", "stiffness", "link_mass"):
+            own[name] = getattr(arm.accuracy, name)
+        own["softest"], own["stiffest"] = stiffness_range(arm.accuracy.stiffness)
         own["floor"], own["ripple"], own["least"], own["inertia"] = MODEL_FLOOR * limit, ripple, CONTACT_FLOOR * limit, inertia
         own["walk"] = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.stiffer, self.offset, self.ways, self.deviations = (own[k] for k in ("stiffer", "offset", "ways", "deviations"))
@@ -110,7 +122,7 @@ class TransmissionTorque:
         own = self._own
         for column in ("stiffer", "offset", "covariance", "differ", "slow_square", "fast_square", "compared"):
             own[column] = 0.0
-        own["covariance"][:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
+        own["covariance"][:, 0, 0] = own["stiffness"] ** 2 / 3.0  # of a uniform error
         own["covariance"][:, 1, 1] = own["ripple"] ** 2
 
     @property
@@ -158,7 +170,7 @@ def _compare(own, rubbing, use) -> bool:
         floor, ripple = own.floor[i], own.ripple[i]
         P, x, dynamics = own.covariance[i], ways[1, i], ways[0, i]
         ways[1, i] += x * own.stiffer[i] + own.offset[i]
-        rigid = (LINK_MASS * dynamics) ** 2 + floor**2
+        rigid = (own.link_mass * dynamics) ** 2 + floor**2
         own.model[i] = np.sqrt(rigid + (shaking * own.inertia[i]) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
         gear, noise = known + (RIPPLE_LEFT * ripple) ** 2, (0.3 * floor) ** 2
@@ -166,7 +178,7 @@ def _compare(own, rubbing, use) -> bool:
             gear = max(own.slow_square[i], own.differ[i] ** 2 - rigid)
         deviations[1, i] = np.sqrt(gear + noise)
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
-        deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
+        deviations[2, i] = np.sqrt((own.motor_constant * ways[2, i]) ** 2 + rubs + floor**2)
         other = 1 if use[1, i] else 2
         external[i], own.by_motor[i] = 0.0, 0.0 if other == 1 else deviations[2, i]
         if not use[0, i] or not (use[1, i] or use[2, i]):
@@ -194,7 +206,7 @@ def _correct_spring(own, use) -> None:
         own.slow_square[i] += (differ**2 - own.slow_square[i]) / compared
         own.fast_square[i] += ((error - differ) ** 2 - own.fast_square[i]) / compared
         # What nothing bends tells nothing of its stiffness: it may drift, but never beyond what was believed at first.
-        P[0, 0] = min(P[0, 0] + walk[0], STIFFNESS**2 / 3.0)
+        P[0, 0] = min(P[0, 0] + walk[0], own.stiffness**2 / 3.0)
         P[1, 1] = min(P[1, 1] + walk[1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
         spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED
@@ -203,7 +215,7 @@ def _correct_spring(own, use) -> None:
         P[0, 1] -= g0 * g1 / spread
         P[1, 0] = P[0, 1]
         stiffer = own.stiffer[i] + g0 * error / spread
-        own.stiffer[i] = min(max(stiffer, SOFTEST), STIFFEST)
+        own.stiffer[i] = min(max(stiffer, own.softest), own.stiffest)
         # The offset was learned together with a stiffness that cannot be: it is what goes with the bound.
         offset = own.offset[i] + g1 * error / spread + (own.stiffer[i] - stiffer) * P[0, 1] / P[0, 0]
         own.offset[i] = min(max(offset, -ripple), ripple)
@@ -229,7 +241,7 @@ def _fuse(own, use, contact) -> None:
         variance = own.model[i] ** 2
         if use[1, i] and own.compared[i] == REMEMBERED:
             # Without an output angle, though, the model's acceleration is made of this torque itself.
-            variance = min(variance, (LINK_MASS * ways[0, i]) ** 2 + own.floor[i] ** 2 + own.fast_square[i])
+            variance = min(variance, (own.link_mass * ways[0, i]) ** 2 + own.floor[i] ** 2 + own.fast_square[i])
         deviations[0, i] = np.sqrt(variance + outside**2)
         weight, total = weighed(own, use, i, 0)
         if weight > 0.0:

@@ -57,6 +57,7 @@ class ExternalWrench:
             noise=(2,),  # of the sensor in a tick [N, N·m]
             walk=(),  # standard deviation of what the bias is off by itself [N]
             offset=(),  # and in this tick [N]
+            gain=(),  # error of the sensor in share of what it measures, at most
             shaking=(),  # of the accelerometer [m/s²]
             turning=(),  # of the angular acceleration that the load is taken to need [rad/s²]
             jitter=(),  # variance of the gyro's difference, each axis [rad²/s⁴]
@@ -95,6 +96,7 @@ class ExternalWrench:
         own["noise"] = told.noise_force, told.noise_torque
         # It is the mean of a window, and the sensor's zero has wandered since.
         own["walk"] = math.hypot(told.walk_force, told.noise_force / math.sqrt(WINDOW))
+        own["gain"] = arm.accuracy.wrench_gain + 2.0 * arm.accuracy.wrench_cross_talk / 5.0
         own["shaking"] = told.noise_acceleration
         own["jitter"] = 2.0 * ((0.0 if gyro is None else gyro.noise) / TICK) ** 2
         own["turning"] = math.sqrt(own["jitter"] * forces.passed)

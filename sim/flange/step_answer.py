@@ -27,7 +27,6 @@ from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.flange.wrench_hypotheses import LONGEST
-from sim.sensing.calibration import STIFFNESS
 
 ANSWER = ticks(JOINTS_SWING)
 """Ticks after which the joints have answered: the arm has swung on its springs."""
@@ -47,8 +46,10 @@ NEITHER = math.exp(-KNOWN)
 class StepAnswer:
     """What is kept of a suspected step, for n joints; `answer` is one tick of it, in free-drive alone."""
 
-    def __init__(self, n: int) -> None:
+    def __init__(self, n: int, stiffness: float) -> None:
+        """`stiffness` is what the gears' stiffness may be wrong by, relative to it."""
         self.record = record(
+            stiffness=(),
             lately=(n,),  # mean of d
             unrest=(n,),  # and its variance
             now=(n,),  # mean of d in the last ticks
@@ -65,6 +66,7 @@ class StepAnswer:
             size=(),  # of the step [N]
         )
         self._own = self.record[0]
+        self._own["stiffness"] = stiffness
         self.forget()
 
     def forget(self) -> None:
@@ -123,7 +125,7 @@ def _answered(own):
     stepped = force = 0.0
     for i in range(own.step.size):
         off, step = own.now[i] - own.before[i], own.step[i]
-        variance = own.variance[i] + (STIFFNESS * step) ** 2
+        variance = own.variance[i] + (own.stiffness * step) ** 2
         force += off * off / variance
         stepped += (off - step) ** 2 / variance
     return np.log((np.exp(-0.5 * stepped) + NEITHER) / (np.exp(-0.5 * force) + NEITHER))

@@ -32,7 +32,7 @@ class WhoseForce:
     """
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
-        self.bank, self._step, self._fall = ExternalWrench(arm, forces), StepAnswer(arm.n), FallAnswer()
+        self.bank, self._step, self._fall = ExternalWrench(arm, forces), StepAnswer(arm.n, arm.accuracy.stiffness), FallAnswer()
         self._records = self.bank.record, self._step.record, self._fall.record
         self._known = forces.record, forces.model
         self._begun = False

@@ -41,7 +41,6 @@ from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, TOUCH, TREMOR
 from pendant.sensor.sensor_errors import CENTRE
 from pendant.tick.estimate import GRAVITY
 from sim.compiled.kernel import kernel
-from sim.sensing.calibration import WRENCH_CROSS_TALK, WRENCH_GAIN
 
 Array = NDArray[np.float64]
 
@@ -56,9 +55,6 @@ SURE = 1.0 / 2.576
 
 CENTRE_AXIS = CENTRE / math.sqrt(3.0)
 """Standard deviation of the payload's centre in each direction [m]."""
-
-GAIN = WRENCH_GAIN + 2.0 * WRENCH_CROSS_TALK / 5.0
-"""Error of the sensor in share of what it measures, at most."""
 
 LATE = math.sqrt(0.5)
 """Share of an angular acceleration at the bandwidth of its filter that is missed."""
@@ -167,7 +163,7 @@ def payload(own, seen, change, kind):
         # fit within the noise of what is left at the flange, and that this noise is small says nothing. One that stays swings on.
         loaded = noise(own, own.whole, axis, LATE if kind == MORE else 0.0)
         R, lever = loaded if kind == MORE else noise(own, own.rest, axis, 0.0), lever_of(axis)
-        offset = (GAIN * weight * lever) ** 2
+        offset = (own.gain * weight * lever) ** 2
         if axis == 1:
             offset += (CENTRE_AXIS * weight) ** 2
         if kind == FREED:

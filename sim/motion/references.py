@@ -11,6 +11,7 @@ from pendant.program.steps import Move, RunScript
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law
 from sim.arm.arm_file import Arm
+from sim.arm.joint_constants import JointConstants
 from sim.braking.motion_meter import MotionMeter
 from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.blend import Blended, Joined, Planned, leaves
@@ -24,7 +25,6 @@ from sim.motion.process import ProcessTrajectory
 from sim.motion.streams import JointStream
 from sim.paths.tool_point import ToolPoint
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import Calibration
 from sim.sensing.sensors import LATENCY
 
 Array = NDArray[np.float64]
@@ -55,11 +55,11 @@ class References:
         push: torque (n,) with which the joints push against the outside as well [N·m], None for none.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
+    def __init__(self, arm: Arm, constants: JointConstants, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
         self._dynamics, self._tool, self._R_FT = dynamics, ToolPoint(dynamics, tcp), R_FT
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
-        self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
+        self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * constants.rotor_inertia, np.array(limits.torque)
         self._strength = Strength(dynamics, self._rotor, self._torque)
         self.meter = MotionMeter(dynamics, tcp, self._strength.braking())
         self._pace = Pace(self.meter)

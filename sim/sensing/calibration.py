@@ -5,29 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.arm.arm_file import Arm, Transmissions
+from sim.arm.arm_file import Arm
 from sim.arm.chain import Body, Chain
+from sim.arm.joint_constants import JointConstants
 
 Array = NDArray[np.float64]
 
-MOTOR_CONSTANT = 0.03
-STIFFNESS = 0.20
-ROTOR_INERTIA = 0.10
-LINK_MASS = 0.02
-LINK_CENTRE = 0.003  # each axis [m]
-ENCODER_RIPPLE = 1e-4  # [rad]
-WRENCH_GAIN = 0.01
-WRENCH_CROSS_TALK = 0.01  # of a channel's range, into every other channel
-FORCE_OFFSET, TORQUE_OFFSET = 4.0, 0.3  # [N], [N·m]
-
 
 @dataclass(frozen=True, slots=True)
-class Calibration:
+class Calibration(JointConstants):
     """Errors of one arm, n joints. Factors are the controller's constant over the arm's; the rest is in the sensors."""
 
-    motor_constant: Array  # (n,)
-    stiffness: Array  # (n,)
-    rotor_inertia: Array  # (n,)
     link_mass: Array  # (n,)
     link_centre: Array  # (n, 3) [m]
     ripple: Array  # (n, 2) amplitude [rad] of the output encoder's first and second harmonic
@@ -44,41 +32,36 @@ def nominal(arm: Arm) -> Calibration:
     return Calibration(one, one, one, one, np.zeros((arm.n, 3)), flat, flat, np.eye(6), zero, zero)
 
 
-def draw(arm: Arm, rng: np.random.Generator) -> Calibration:
-    """An arm's errors, each uniform within its bound."""
-    n = arm.n
+def draw(arm: Arm, rng: np.random.Generator, times: float = 1.0) -> Calibration:
+    """An arm's errors, each uniform within so many `times` the bound that the arm's file states."""
+    n, stated = arm.n, arm.accuracy
 
     def factor(bound: float) -> Array:
-        return 1.0 + bound * rng.uniform(-1.0, 1.0, n)
+        return 1.0 + times * bound * rng.uniform(-1.0, 1.0, n)
 
-    scale = np.array([FORCE_OFFSET] * 3 + [TORQUE_OFFSET] * 3)
-    gain = np.diag(1.0 + WRENCH_GAIN * rng.uniform(-1.0, 1.0, 6))
+    scale = times * np.array([stated.force_offset] * 3 + [stated.torque_offset] * 3)
+    gain = np.diag(1.0 + times * stated.wrench_gain * rng.uniform(-1.0, 1.0, 6))
     # Cross-talk is relative to the ranges: a full force shows as so much of a full torque.
     force_torque = arm.sensors.force_torque
     drift = None if force_torque is None else force_torque.drift
-    warm = np.zeros(6) if drift is None else np.array([drift.force] * 3 + [drift.torque] * 3)
+    warm = np.zeros(6) if drift is None else times * np.array([drift.force] * 3 + [drift.torque] * 3)
     full = np.ones(6) if force_torque is None else np.array([force_torque.force.range] * 3 + [force_torque.torque.range] * 3)
-    cross = WRENCH_CROSS_TALK * rng.uniform(-1.0, 1.0, (6, 6)) * full[:, None] / full[None, :] / 5.0
+    cross = times * stated.wrench_cross_talk * rng.uniform(-1.0, 1.0, (6, 6)) * full[:, None] / full[None, :] / 5.0
     np.fill_diagonal(cross, 0.0)
     split = rng.uniform(0.0, 1.0, n)
-    amplitude = ENCODER_RIPPLE * np.stack([split, 1.0 - split], axis=1)
+    amplitude = times * arm.sensors.encoders.ripple * np.stack([split, 1.0 - split], axis=1)
     return Calibration(
-        motor_constant=factor(MOTOR_CONSTANT),
-        stiffness=factor(STIFFNESS),
-        rotor_inertia=factor(ROTOR_INERTIA),
-        link_mass=factor(LINK_MASS),
-        link_centre=rng.uniform(-LINK_CENTRE, LINK_CENTRE, (n, 3)),
+        motor_constant=factor(stated.motor_constant),
+        stiffness=factor(stated.stiffness),
+        rotor_inertia=factor(stated.rotor_inertia),
+        link_mass=factor(stated.link_mass),
+        link_centre=times * rng.uniform(-stated.link_centre, stated.link_centre, (n, 3)),
         ripple=amplitude,
         ripple_phase=rng.uniform(0.0, 2.0 * np.pi, (n, 2)),
         wrench_gain=gain + cross,
         wrench_offset=scale * rng.uniform(-1.0, 1.0, 6),
         wrench_warm=warm * rng.uniform(-1.0, 1.0, 6),
     )
-
-
-def ripple_torque(springs: Transmissions) -> Array:
-    """What the ripple of each joint's output encoder makes of a torque that comes from the deflection (n,), at most [N·m]."""
-    return ENCODER_RIPPLE * (np.array(springs.stiffness) + np.array(springs.hysteresis_stiffness))
 
 
 def believed(chain: Chain, calibration: Calibration) -> tuple[Body, ...]:

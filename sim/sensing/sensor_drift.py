@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.sensor.sensor_spec import SensorSpec
-from sim.arm.arm_file import Arm, Drift
-from sim.sensing.calibration import FORCE_OFFSET, TORQUE_OFFSET, Calibration
+from sim.arm.arm_file import Accuracy, Arm, Drift
+from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -62,47 +62,51 @@ def axes(force: float, torque: float) -> Array:
     return np.array([force] * 3 + [torque] * 3)
 
 
-def most(drift: Drift | None) -> tuple[float, float]:
+def most(accuracy: Accuracy, drift: Drift | None) -> tuple[float, float]:
     """Largest zero error of an axis at any time, without faults: of the forces [N], of the torques [N·m].
 
     Args:
+        accuracy: what the arm's file says of it.
         drift: the numbers of the arm's file; None for a sensor that does not drift.
     """
+    cold = accuracy.force_offset, accuracy.torque_offset
     if drift is None:
-        return FORCE_OFFSET, TORQUE_OFFSET
+        return cold
     # Between cold and warm the error is never larger than at both ends.
-    force = max(FORCE_OFFSET, drift.force) + BOUND * drift.walk_force
-    return force, max(TORQUE_OFFSET, drift.torque) + BOUND * drift.walk_torque
+    force = max(cold[0], drift.force) + BOUND * drift.walk_force
+    return force, max(cold[1], drift.torque) + BOUND * drift.walk_torque
 
 
-def fastest(drift: Drift | None) -> tuple[float, float]:
+def fastest(accuracy: Accuracy, drift: Drift | None) -> tuple[float, float]:
     """Largest change of an axis' zero error within a second, without faults: of the forces [N/s], of the torques [N·m/s].
 
     No sensor keeps it up: the walk's part is a kick of a single second. See `lasting`.
 
     Args:
+        accuracy: what the arm's file says of it.
         drift: the numbers of the arm's file; None for a sensor that does not drift.
     """
     if drift is None:
         return 0.0, 0.0
     keep = math.exp(-1.0 / drift.walk_time)
     walking = BOUND * (1.0 - keep) + BOUND * math.sqrt(1.0 - keep**2)  # back to the middle from the bound, and kicked
-    force, torque = lasting(drift)
+    force, torque = lasting(accuracy, drift)
     return force / SPREAD[0] + drift.walk_force * walking, torque / SPREAD[0] + drift.walk_torque * walking
 
 
-def lasting(drift: Drift | None) -> tuple[float, float]:
+def lasting(accuracy: Accuracy, drift: Drift | None) -> tuple[float, float]:
     """Rate that an axis' zero error keeps up for minutes, at most: of the forces [N/s], of the torques [N·m/s].
 
     It is that of a sensor with the file's time constant that warms up from one bound to the other: for the UR5e the 4 N in
     5 minutes that a user saw (Universal_Robots_ROS_Driver issue 633).
 
     Args:
+        accuracy: what the arm's file says of it.
         drift: the numbers of the arm's file; None for a sensor that does not drift.
     """
     if drift is None:
         return 0.0, 0.0
-    return (FORCE_OFFSET + drift.force) / drift.warm_up, (TORQUE_OFFSET + drift.torque) / drift.warm_up
+    return (accuracy.force_offset + drift.force) / drift.warm_up, (accuracy.torque_offset + drift.torque) / drift.warm_up
 
 
 def sensor_spec(arm: Arm) -> SensorSpec:
@@ -110,7 +114,7 @@ def sensor_spec(arm: Arm) -> SensorSpec:
     force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
     if force_torque is None:
         return SensorSpec()
-    drift, offset = lasting(force_torque.drift), most(force_torque.drift)
+    drift, offset = lasting(arm.accuracy, force_torque.drift), most(arm.accuracy, force_torque.drift)
     noise = (force_torque.force.noise, force_torque.torque.noise)
     shaken = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
     spec, wander = SensorSpec(*drift, *offset, *noise, shaken), force_torque.drift

@@ -159,9 +159,9 @@ def nan(count: int) -> list[float]:
 
 
 def blinded_arm(arm: Arm) -> Arm:
-    """Without what only the plant and the sensors need: torque ripple, warming, encoder ripple."""
+    """Without what only the plant and the sensors need: torque ripple, warming, noise of the encoders."""
     replace = msgspec.structs.replace
-    encoders = replace(arm.sensors.encoders, ripple=float("nan"), noise_counts=float("nan"))
+    encoders = replace(arm.sensors.encoders, noise_counts=float("nan"))
     thermals = replace(arm.thermals, capacity=nan(6), resistance=nan(6), ambient=float("nan"))
     motors, sensors = replace(arm.motors, ripple=nan(6)), replace(arm.sensors, encoders=encoders)
     return replace(arm, motors=motors, thermals=thermals, sensors=sensors)

@@ -107,5 +107,5 @@ class LabSetup:
             world=world,
             walls=list(self._loop.walls),
             seed=int(self.seed.value),
-            mismatch="on" if self.mismatch.value else "nominal",
+            mismatch="nominal" if not self.mismatch.value else "on" if now.mismatch == "nominal" else now.mismatch,
         )

@@ -202,6 +202,8 @@ def test_what_does_not_fit_is_refused_by_field(fields: dict[str, Any], says: str
         ({"seed": -1}, "seed = -1"),
         ({"duration": 0}, "duration = 0"),
         ({"mismatch": "off"}, "mismatch = off"),
+        ({"mismatch": 3.1}, "mismatch = 3.1"),
+        ({"mismatch": 0.0}, "mismatch = 0.0"),
     ],
 )
 def test_what_the_schema_forbids_is_refused_in_one_line(fields: dict[str, Any], says: str) -> None:

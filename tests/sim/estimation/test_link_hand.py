@@ -18,7 +18,6 @@ from sim.estimation.transmission_torque import CONTACT
 from sim.flange.flange_forces import DAMPING
 from sim.motion.references import STANDING
 from sim.plant.touch import Push
-from sim.sensing.calibration import LINK_MASS, MOTOR_CONSTANT
 from sim.simulation import Simulation
 from tests.sim.arms import UR5E
 from tests.sim.bench import CENTRE
@@ -26,6 +25,7 @@ from tests.sim.bench import Bench as Device
 
 Array = NDArray[np.float64]
 N = UR5E.n
+LINK_MASS, MOTOR_CONSTANT = UR5E.accuracy.link_mass, UR5E.accuracy.motor_constant
 DOUBT = 0.5  # [N·m]
 NO_BIAS = (0.0,) * ZERO
 ALL = np.ones(N, dtype=np.bool_)

@@ -15,6 +15,7 @@ from pendant.sensor.odds import RARELY
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
+from sim.arm.joint_constants import ripple_torque
 from sim.arm.scenario import Load, Scenario
 from sim.estimation.momentum_observer import BANDWIDTH, MomentumObserver, follow
 from sim.estimation.payload_fall import JointTorques, PayloadFall
@@ -27,7 +28,6 @@ from sim.flange.wrench_hypotheses import LONGEST
 from sim.plant.changes import DropPayload, SensorFault
 from sim.plant.touch import Pull, Push
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import STIFFNESS, ripple_torque
 from tests.sim.arms import UR5E
 from tests.sim.bench import CENTRE, LONG, NOTHING, Bench
 
@@ -37,7 +37,8 @@ PAYLOAD = Body(3.0, np.array([0.01, -0.02, 0.08]), np.eye(3) * 0.004)
 BENT = np.array([0.3, -1.2, 1.5, -0.8, -1.2, 0.7])
 STILL = np.zeros((3, N))
 MOTION = np.array([[0.0] * N, [0.1, -0.3, 0.2, 0.5, -0.4, 0.2], [0.5, 1.0, -0.8, 0.4, 0.3, -0.2]])
-RIPPLE = ripple_torque(UR5E.transmissions)
+STIFFNESS = UR5E.accuracy.stiffness
+RIPPLE = ripple_torque(UR5E)
 SETTLED = 100
 """Ticks after which the mean of the last ticks is that of one."""
 LATE = 2.0 / (2.0 * np.pi * BANDWIDTH) + 0.5 * TICK

@@ -7,19 +7,21 @@ from app.files.library import load_arm
 from pendant.all_settings import Settings
 from pendant.tick.modes import TICK
 from sim.arm.chain import NOTHING
+from sim.arm.joint_constants import ripple_torque
 from sim.arm.scenario import Scenario
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.torque_errors import CARRIED, WAIT
 from sim.estimation.transmission_torque import SETTLE_TICKS
-from sim.sensing.calibration import ENCODER_RIPPLE, FORCE_OFFSET, LINK_MASS, MOTOR_CONSTANT, STIFFNESS, TORQUE_OFFSET
 from sim.simulation import Simulation
 
 ARM = load_arm("ur5e")
+LINK_MASS, MOTOR_CONSTANT, STIFFNESS = ARM.accuracy.link_mass, ARM.accuracy.motor_constant, ARM.accuracy.stiffness
+FORCE_OFFSET, TORQUE_OFFSET = ARM.accuracy.force_offset, ARM.accuracy.torque_offset
 NONE, ALL = np.zeros(6), np.ones((3, 6), dtype=bool)
 STIFFER = np.array([0.15, -0.1, 0.12, -0.12, 0.05, 0.1])
 ZERO = np.array([3.0, -2.0, 2.5, 0.2, -0.1, 0.15])
 """Of the flange sensor [N, N·m]."""
-RIPPLE = ENCODER_RIPPLE * (np.array(ARM.transmissions.stiffness) + np.array(ARM.transmissions.hysteresis_stiffness))
+RIPPLE = ripple_torque(ARM)
 """The most that it makes [N·m]."""
 JUMP = 0.6  # of the flange sensor's zero [N·m]
 SPEED = np.array([0.7, 1.1, 1.6, 2.3, 2.9, 3.7])  # of each joint's swing [rad/s]

@@ -29,6 +29,7 @@ NO_BIAS = (0.0,) * 6
 NOT_MOVED = np.zeros(3)
 OFFSET = math.hypot(0.3, 0.15 / math.sqrt(50.0))  # of the bias, beside what it is taken for [N]: walk, and the mean of a window
 FREE_MASS = sum(UR5E.masses.mass[2:]) + TOOL.mass + PAYLOAD.mass  # [kg] forearm, wrists and load
+GAIN = 0.01 + 2.0 * 0.01 / 5.0  # of the sensor: its gain, and what two channels of five talk into another
 WEIGHT = PAYLOAD.mass * GRAVITY
 NEEDS = np.concatenate([PAYLOAD.mass * UP, np.cross(PAYLOAD.com, PAYLOAD.mass * UP)])
 
@@ -432,7 +433,7 @@ def of_change(
         for kind in (LOST, FREED, MORE):
             left = swings if kind == MORE else empty
             credit[kind] += 0.0 if kind == MORE else 0.5 * length * math.log(loaded / left)
-            offset = (bank.GAIN * WEIGHT * lever) ** 2 + ((bank.CENTRE_AXIS * WEIGHT) ** 2 if axis else 0.0)
+            offset = (GAIN * WEIGHT * lever) ** 2 + ((bank.CENTRE_AXIS * WEIGHT) ** 2 if axis else 0.0)
             offset += (OFFSET * lever) ** 2 if kind == FREED else 4.0 * steep[axis] + swings / BEFORE
             parts[kind].append(after[:, k] - (0.0 if kind == FREED else x0[k]))
             covariances[kind].append(left * eye + offset * ones)

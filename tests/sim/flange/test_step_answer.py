@@ -33,7 +33,7 @@ class Joints:
         dynamics.recursion.run(posture, still, np.zeros(3))
         self.forces = FlangeForces(dynamics)
         self.wrench = ExternalWrench(UR5E, self.forces)
-        self.answer = StepAnswer(UR5E.n)
+        self.answer = StepAnswer(UR5E.n, UR5E.accuracy.stiffness)
         self.own = self.answer.record[0]
         self.onset, self.rng = onset, np.random.default_rng(seed)
         self.torques = dynamics.recursion.jacobian.T @ STEP

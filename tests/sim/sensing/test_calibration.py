@@ -49,6 +49,24 @@ def test_each_error_fills_its_bound(arm: Arm) -> None:
     spread([np.diag(d.wrench_gain) for d in drawn], 0.01, 1.0)
 
 
+def test_errors_are_so_many_times_as_large_as_stated() -> None:
+    once, half_more = (calibration.draw(UR5E, np.random.default_rng(3), times) for times in (1.0, 1.5))
+    for name in ("motor_constant", "stiffness", "rotor_inertia", "link_mass"):
+        assert getattr(half_more, name) - 1.0 == pytest.approx(1.5 * (getattr(once, name) - 1.0))
+    for name in ("link_centre", "ripple", "wrench_offset", "wrench_warm"):
+        assert getattr(half_more, name) == pytest.approx(1.5 * getattr(once, name))
+    assert half_more.wrench_gain - np.eye(6) == pytest.approx(1.5 * (once.wrench_gain - np.eye(6)))
+    assert half_more.ripple_phase == pytest.approx(once.ripple_phase)
+
+
+def test_an_arm_has_the_errors_that_its_file_states() -> None:
+    """Each bound is moved by itself; what is not bounded by it stays as it was."""
+    whole = msgspec.structs.replace(UR5E, accuracy=msgspec.structs.replace(UR5E.accuracy, stiffness=0.1))
+    usual, stiffer = (calibration.draw(arm, np.random.default_rng(3)) for arm in (UR5E, whole))
+    assert stiffer.stiffness - 1.0 == pytest.approx(0.5 * (usual.stiffness - 1.0))
+    assert stiffer.motor_constant == pytest.approx(usual.motor_constant)
+
+
 @pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
 def test_cross_talk_is_one_percent_of_the_ranges_at_most(arm: Arm) -> None:
     sensor = arm.sensors.force_torque

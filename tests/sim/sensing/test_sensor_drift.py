@@ -7,7 +7,7 @@ import pytest
 from pendant.guided.bias_follower import drift
 from sim.arm.arm_file import Arm, Drift
 from sim.sensing import calibration
-from sim.sensing.calibration import FORCE_OFFSET, Calibration
+from sim.sensing.calibration import Calibration
 from sim.sensing.sensor_drift import SensorDrift, axes, fastest, most, sensor_spec
 from sim.sensing.sensors import Sensors
 from tests.sim.arms import UR5E, arms
@@ -96,7 +96,7 @@ def test_the_walk_begins_at_zero_and_widens(second: int) -> None:
 
 @pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
 def test_after_a_day_every_axis_is_within_its_bounds(arm: Arm) -> None:
-    largest, seed = axes(*most(filed(arm))), sum(arm.name.encode())
+    largest, seed = axes(*most(arm.accuracy, filed(arm))), sum(arm.name.encode())
     drawn = calibration.draw(arm, np.random.default_rng(seed))
     drift = SensorDrift(filed(arm), drawn, source(seed))
     device = Sensors(arm, drawn, np.random.default_rng(seed), drift)
@@ -114,15 +114,15 @@ def test_the_bounds_are_reached_where_the_walk_is_all() -> None:
 
 def test_the_largest_errors_and_rates_of_the_shipped_arms() -> None:
     for arm in arms():
-        assert most(filed(arm)) == pytest.approx((4.9, 0.36))
-        assert fastest(filed(arm)) == pytest.approx((0.0572, 0.00403), rel=2e-3)  # 8 N in 300 s, and 0.03 N of walk
-    assert most(None) == (FORCE_OFFSET, 0.3)
-    assert fastest(None) == (0.0, 0.0)
+        assert most(arm.accuracy, filed(arm)) == pytest.approx((4.9, 0.36))
+        assert fastest(arm.accuracy, filed(arm)) == pytest.approx((0.0572, 0.00403), rel=2e-3)  # 8 N in 300 s, and 0.03 N of walk
+    assert most(UR5E.accuracy, None) == (4.0, 0.3)
+    assert fastest(UR5E.accuracy, None) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("numbers", [FILED, WALK, msgspec.structs.replace(FILED, warm_up=20.0, force=9.0)])
 def test_no_second_is_faster_than_the_fastest(numbers: Drift) -> None:
-    allowed, seen = axes(*fastest(numbers)), np.zeros(6)
+    allowed, seen = axes(*fastest(UR5E.accuracy, numbers)), np.zeros(6)
     for seed in range(100):
         device = SensorDrift(numbers, errors(seed), source(seed))
         seen = np.maximum(seen, np.abs([device.step() for _ in range(200)]).max(axis=0))
