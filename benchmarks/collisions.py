@@ -6,6 +6,7 @@ where it should be. Truth is read for scoring alone. The second part is motion w
 """
 
 from itertools import pairwise
+from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -298,6 +299,8 @@ def measure(report: Report) -> None:
         report.row("largest force after 20 ms, of the twin's, median", float(np.median(ratio)), "", n=len(named))
         report.row("first peak, of the twin's, median", float(np.median([r.seen.peak / max(r.twin.peak, 1.0) for r in named])))
     _table(report, hard)
+    report.options.out.mkdir(parents=True, exist_ok=True)
+    draw(hard, report.options.out / f"collisions-{base}.webp")
     for part in get_args(Part):
         some = [r for r in hard if r.strike.part == part]
         report.share(f"{part}: stopped", sum(bool(r.seen.stopped) for r in some), len(some))
@@ -311,13 +314,36 @@ def _table(report: Report, hard: list[Result]) -> None:
     """Medians of delay and force by speed and stiffness; a cell without a hit is left out."""
     for low, high in pairwise(SPEED_EDGES):
         for soft, stiff in pairwise(STIFFNESS_EDGES):
-            some = [r for r in hard if low <= r.strike.speed < high and soft <= r.strike.stiffness < stiff and r.seen.stopped]
+            some = [r for r in hard if low <= r.strike.speed < high and _cell(r, soft, stiff)]
             if some:
                 cell = f"{1e3 * low:.0f} to {1e3 * high:.0f} mm/s on {soft:g} to {stiff:g} N/m"
                 report.row(f"{cell}: touch to stop", 1e3 * float(np.median([r.seen.delay for r in some])), "ms", n=len(some))
                 peaks = [(max(r.seen.peak, r.seen.later), max(r.twin.peak, r.twin.later)) for r in some]
                 for name, k in (("largest force", 0), ("largest force without the stop", 1)):
                     report.row(f"{cell}: {name}", float(np.median([each[k] for each in peaks])), "N", n=len(some))
+
+
+def _cell(r: Result, soft: float, stiff: float) -> bool:
+    return bool(r.seen.stopped) and soft <= r.strike.stiffness < stiff
+
+
+def draw(hard: list[Result], path: Path) -> None:
+    """Write the picture: the largest force of each hit over its speed, with the protective stop and without it."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 3.6), layout="constrained")
+    for axes, title, of in zip(
+        figure.subplots(1, 2, sharey=True), ("with the protective stop", "without it"), (0, 1), strict=True
+    ):
+        for soft, stiff in pairwise(STIFFNESS_EDGES):
+            some = [r for r in hard if _cell(r, soft, stiff)]
+            forces = [max(course.peak, course.later) for course in ((r.seen, r.twin)[of] for r in some)]
+            axes.plot([1e3 * r.strike.speed for r in some], forces, ".", label=f"{soft:g} to {stiff:g} N/m")
+        axes.set(xscale="log", yscale="log", xlabel="speed at the touch [mm/s]", title=title)
+        axes.grid(visible=True, which="both", alpha=0.2)
+    figure.axes[0].set_ylabel("largest force [N]")
+    figure.axes[1].legend(loc="lower right", fontsize=8)
+    figure.savefig(path, dpi=110, pil_kwargs={"quality": 80})
 
 
 def _quiet(report: Report, base: int) -> None:
