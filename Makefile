@@ -3,6 +3,7 @@
 #   make run         the web app, opened in the browser
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
 #   make test ROOM=pendant/walls   one room in some seconds: lint, its tests, what rooms may use
+#   make test-full   the same, and whole: nothing left out that has passed before, every product, every size of the window
 #   make e2e-full    every browser test at every size of the window; make test has one size of what is the same at all
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base;
 #                    their results are in out/bench; python -m tools.results out/bench takes them over into docs/results
@@ -34,9 +35,11 @@ SEED ?= 1000
 BENCHES := $(filter-out __init__ arms common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 # Where Python is told to keep no compiled modules, each process of the tests would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
+# Of what is the same at every size of the window, one.
+SIZES ?= -m "not every_size"
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full races races-full soak soak-quick mutate claims docs fuzz clean lint types contracts kernels wheel browser pictures
+.PHONY: run test test-full bench bench-full races races-full soak soak-quick mutate claims docs fuzz clean lint types contracts kernels wheel browser pictures
 .PHONY: paced computing pushed e2e e2e-full
 
 run: $(VENV)/run.stamp
@@ -55,6 +58,9 @@ test: | $(BIN)/python
 	$(MAKE) --no-print-directory -j2 --output-sync=target paced computing
 	$(MAKE) --no-print-directory pushed
 endif
+
+test-full:
+	WHOLE=1 $(MAKE) --no-print-directory test SIZES=
 
 $(BIN)/python:
 	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) not found: install Python 3.11 or newer" >&2; exit 1; }
@@ -90,18 +96,18 @@ kernels: $(VENV)/dev.stamp
 # All tests that are neither `computing` nor `pushed`.
 paced: $(VENV)/dev.stamp | pictures browser
 	$(BIN)/pytest -q -n $(WORKERS) --dist worksteal $(SPARE) $(addprefix --ignore=,tests/e2e $(COMPUTING)) --durations=10
-	$(BIN)/pytest -q -m "not every_size" tests/e2e $(addprefix --ignore=,$(PUSHED)) --durations=10
+	$(BIN)/pytest -q $(SIZES) tests/e2e $(addprefix --ignore=,$(PUSHED)) --durations=10
 
 # At the lowest priority: what has a clock to keep does not wait for these.
 computing: $(VENV)/dev.stamp
 	nice -n 19 $(BIN)/pytest -q -n 2 --dist worksteal $(SPARE) -p no:rerunfailures $(COMPUTING) --durations=10
 
 pushed: $(VENV)/dev.stamp | browser
-	$(BIN)/pytest -q -m "not every_size" $(PUSHED)
+	$(BIN)/pytest -q $(SIZES) $(PUSHED)
 
 # One at a time: these measure motion against the clock of a real browser.
 e2e: $(VENV)/dev.stamp | browser
-	$(BIN)/pytest -q -m "not every_size" tests/e2e
+	$(BIN)/pytest -q $(SIZES) tests/e2e
 
 e2e-full: $(VENV)/dev.stamp | browser
 	$(BIN)/pytest -q tests/e2e
@@ -156,7 +162,7 @@ soak soak-quick: $(VENV)/dev.stamp
 
 mutate: $(VENV)/dev.stamp
 	$(PIP) --editable '.[dev,mutate]'
-	$(BIN)/mutmut run --max-children $(WORKERS)
+	WHOLE=1 $(BIN)/mutmut run --max-children $(WORKERS)
 	$(BIN)/python -m tools.mutants
 
 claims: $(VENV)/dev.stamp kernels

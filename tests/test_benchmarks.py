@@ -15,6 +15,7 @@ import pytest
 
 from benchmarks import arms, common, drift, free_drive_forces, realtime, recording, tick
 from benchmarks.common import Options, Report
+from tests.items import each_of
 
 FOLDER = Path(common.__file__).parent
 HELPERS = {"__init__", "arms", "common", "network_clients", "postures", "viewer"}
@@ -25,7 +26,7 @@ def report(out: Path) -> Report:
     return Report("tried", Options(full=False, seed=1000, out=out))
 
 
-@pytest.mark.parametrize("name", BENCHES)
+@each_of(BENCHES)
 def test_a_bench_says_what_it_measures_and_has_a_measure(name: str) -> None:
     module = importlib.import_module(f"benchmarks.{name}")
     assert module.__doc__
@@ -33,7 +34,7 @@ def test_a_bench_says_what_it_measures_and_has_a_measure(name: str) -> None:
     assert (FOLDER / f"{name}.py").read_text().rstrip().endswith(f'if __name__ == "__main__":\n    main("{name}", measure)')
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.py")), ids=lambda path: path.stem)
+@each_of(sorted(FOLDER.rglob("*.py")), lambda path: path.stem)
 def test_no_row_has_a_count_in_its_name(path: Path) -> None:
     """It would be another row at every seed base; what is counted goes into `n`."""
     assert re.findall(r"report\.(?:row|share)\(\s*f\"[^\"]*\{(?:len\(|n\}|count\})", path.read_text()) == []

@@ -29,6 +29,7 @@ from pendant.limits import parameters
 from pendant.limits import settings as limit_settings
 from pendant.tick.source_signal import Signal
 from pendant.walls import shapes, solids
+from tests.items import each_of
 from tests.pendant.contacts import limit
 from tests.pendant.estimates import estimate
 from tools import claims_page, missed, modules, reactions, results, traceability
@@ -64,7 +65,7 @@ def within(module: Any, code: str, **more: Any) -> dict[str, Any]:
     return names
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@each_of(PAGES, lambda page: page.name)
 def test_every_file_and_link_that_a_page_names_is_there(page: Path) -> None:
     assert [name for name in named(page) if not (ROOT / name).exists()] == []
     links = re.findall(r"\]\(([^)#:]+)\)", page.read_text())

@@ -5,7 +5,7 @@ import re
 from collections import Counter
 from pathlib import Path
 
-import pytest
+from tests.items import each_of
 
 ROOT = Path(__file__).parent.parent
 TOPS = ("pendant", "sim", "app")
@@ -56,13 +56,13 @@ def named(room: str) -> set[str]:
     return set() if sentence is None else set(re.findall(r"([a-z_/]+)/", sentence[1]))
 
 
-@pytest.mark.parametrize("room", ROOMS)
+@each_of(ROOMS)
 def test_a_room_is_small(room: str) -> None:
     inside = [module for module in MODULES if module.rpartition(".")[0] == room]
     assert len(inside) <= MODULES_AT_MOST, sorted(inside)
 
 
-@pytest.mark.parametrize("room", ROOMS)
+@each_of(ROOMS)
 def test_a_room_uses_what_it_says(room: str) -> None:
     top = room.partition(".")[0]
     found = {used for used in uses(room) if used in ROOMS and used not in GROUND and used.partition(".")[0] == top}

@@ -16,6 +16,7 @@ from pendant.all_settings import Settings, apply
 from pendant.walls.definitions import Area
 from pendant.walls.shapes import Box
 from sim.arm.scenario import table
+from tests.items import each_of
 
 ARM = load_arm("ur5e")
 PREPARED = prepare(Setup(world="table", tool="gripper", mounting="wall", seed=4), "test")
@@ -45,7 +46,7 @@ def test_the_frames_of_tools_come_back_as_they_were_edited_and_what_is_on_the_ar
     assert table(prepare(kept, "test").scenario)[0] == frame
 
 
-@pytest.mark.parametrize("name", bundled("sessions"))
+@each_of(bundled("sessions"))
 def test_every_bundled_session_has_a_set_up_that_comes_back(name: str) -> None:
     prepared = prepare(opened(find(name), Session), name)
     if not prepared.arm.name.startswith("ur5e"):

@@ -36,7 +36,7 @@ def chromium_path() -> str | None:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "e2e: drives a real browser")
-    config.addinivalue_line("markers", "every_size: a further size of the window, for `make e2e-full` alone")
+    config.addinivalue_line("markers", "every_size: a further size of the window, for `make test-full` and `make e2e-full` alone")
 
 
 @pytest.fixture(scope="session")

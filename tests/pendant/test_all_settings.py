@@ -8,6 +8,7 @@ import pytest
 from pendant.all_settings import Settings, apply, describe, digest, find, limits_checksum, value_of
 from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import SettingError, SettingRow, Value, ticks
+from tests.items import each_of
 
 # name: (default, low, high, unit, requirement, locked), copied from the spec by hand
 EXPECTED = {
@@ -408,7 +409,7 @@ def test_defaults_are_the_shipped_settings() -> None:
     assert {row.name: value_of(Settings(), row.name) for row in describe()} == {row.name: row.default for row in describe()}
 
 
-@pytest.mark.parametrize("row", NUMBERS, ids=lambda row: row.name)
+@each_of(NUMBERS, lambda row: row.name)
 def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: SettingRow) -> None:
     assert row.low is not None
     assert row.high is not None
@@ -423,7 +424,7 @@ def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: SettingRow) -> No
         assert caught.value.allowed == f"a number from {row.low:g} to {row.high:g} {row.unit}".rstrip()
 
 
-@pytest.mark.parametrize("row", COUNTS, ids=lambda row: row.name)
+@each_of(COUNTS, lambda row: row.name)
 def test_a_count_is_a_whole_number_of_its_range(row: SettingRow) -> None:
     assert row.low is not None
     assert row.high is not None
@@ -439,7 +440,7 @@ def test_a_count_is_a_whole_number_of_its_range(row: SettingRow) -> None:
         assert caught.value.allowed == f"a whole number from {low} to {high}"
 
 
-@pytest.mark.parametrize("row", CHOICES, ids=lambda row: row.name)
+@each_of(CHOICES, lambda row: row.name)
 def test_a_choice_is_one_of_its_words(row: SettingRow) -> None:
     for word in row.choices:
         taken = value_of(apply(Settings(), {row.name: word}), row.name)
@@ -452,7 +453,7 @@ def test_a_choice_is_one_of_its_words(row: SettingRow) -> None:
         assert caught.value.allowed == "one of " + ", ".join(row.choices)
 
 
-@pytest.mark.parametrize(("old", "new"), RENAMED.items())
+@each_of(RENAMED.items())
 def test_an_old_name_is_answered_with_the_new_one(old: str, new: str) -> None:
     assert old not in EXPECTED
     with pytest.raises(SettingError) as caught:
@@ -461,7 +462,7 @@ def test_an_old_name_is_answered_with_the_new_one(old: str, new: str) -> None:
     assert caught.value.allowed.startswith(f"is called {new} now; allowed there: ")
 
 
-@pytest.mark.parametrize("row", SWITCHES, ids=lambda row: row.name)
+@each_of(SWITCHES, lambda row: row.name)
 def test_a_switch_is_true_or_false(row: SettingRow) -> None:
     for value in (True, False):
         assert value_of(apply(Settings(), {row.name: value}), row.name) is value

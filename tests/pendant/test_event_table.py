@@ -1,8 +1,7 @@
 """The event table is complete, and its texts fit."""
 
 import string
-
-import pytest
+from itertools import product
 
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind, Values
@@ -10,6 +9,7 @@ from pendant.events.event_row import LEAVING, Clears, Effect, EventRow, Severity
 from pendant.inputs import Command
 from pendant.program.rows import COMMANDS
 from pendant.tick.modes import Mode
+from tests.items import each_of
 
 EXAMPLE: Values = {
     **dict.fromkeys(
@@ -234,7 +234,7 @@ def fields(row: EventRow) -> set[str]:
     return {name for text in texts(row) for _, name, _, _ in string.Formatter().parse(text) if name}
 
 
-@pytest.mark.parametrize("kind", Kind)
+@each_of(Kind)
 def test_texts_use_the_declared_values_and_no_others(kind: Kind) -> None:
     row = TABLE[kind]
     assert fields(row) <= set(row.keys)
@@ -244,8 +244,7 @@ def test_texts_use_the_declared_values_and_no_others(kind: Kind) -> None:
     assert len(set(row.keys)) == len(row.keys)
 
 
-@pytest.mark.parametrize("zero", [True, False])
-@pytest.mark.parametrize("kind", Kind)
+@each_of(product(Kind, [True, False]))
 def test_texts_are_short_and_whole(kind: Kind, zero: bool) -> None:
     row = TABLE[kind]
     headline, guidance = render(Event(kind, 0, {key: {**EXAMPLE, "zero": zero}[key] for key in row.keys}))
@@ -256,7 +255,7 @@ def test_texts_are_short_and_whole(kind: Kind, zero: bool) -> None:
     assert guidance == "" or guidance.endswith(".")
 
 
-@pytest.mark.parametrize("kind", [kind for kind, row in TABLE.items() if row.effect is not Effect.INFO])
+@each_of(kind for kind, row in TABLE.items() if row.effect is not Effect.INFO)
 def test_whatever_acts_on_the_mode_has_guidance(kind: Kind) -> None:
     """FD-22."""
     assert TABLE[kind].guidance

@@ -3,9 +3,8 @@
 import ast
 from pathlib import Path
 
-import pytest
-
 import pendant
+from tests.items import each_of
 
 ALLOWED = {
     "collections",
@@ -29,7 +28,7 @@ def test_there_are_files() -> None:
     assert "supervisor.py" in {file.name for file in FILES}
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+@each_of(FILES, lambda file: file.name)
 def test_it_imports_and_calls_only_what_is_pure(file: Path) -> None:
     tree = ast.parse(file.read_text(encoding="utf-8"))
     names: set[str] = set()

@@ -14,6 +14,7 @@ from pendant.supervisor import Supervisor
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.walls.definitions import Start, Wall
 from pendant.walls.shapes import Sphere
+from tests.items import each_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench
 from tests.pendant.oracle import PROGRAM, WRONG
@@ -284,7 +285,7 @@ def test_limits_are_locked_in_free_drive_and_run_and_from_the_signal_on(
         assert bench.supervisor.settings == before
 
 
-@pytest.mark.parametrize("row", UNLOCKED, ids=lambda row: row.name)
+@each_of(UNLOCKED, lambda row: row.name)
 def test_what_is_no_limit_changes_in_free_drive_and_run(row: SettingRow) -> None:
     for bench, mode in ((Bench().entered(), Mode.FREE_DRIVE), (running(), Mode.RUN)):
         before = bench.supervisor.settings
@@ -293,7 +294,7 @@ def test_what_is_no_limit_changes_in_free_drive_and_run(row: SettingRow) -> None
         assert bench.supervisor.settings == apply(before, {row.name: another(row)})
 
 
-@pytest.mark.parametrize("row", [*LOCKED, *UNLOCKED], ids=lambda row: row.name)
+@each_of([*LOCKED, *UNLOCKED], lambda row: row.name)
 def test_each_setting_changes_while_the_arm_is_held(row: SettingRow) -> None:
     bench, value = Bench(), another(row)
     bench.step(change(row))

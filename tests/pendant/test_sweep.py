@@ -11,6 +11,7 @@ from pendant.all_settings import Settings, apply
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from tests.passed import WHOLE
 from tests.pendant.oracle import JOG, PROGRAM, STRAIGHT, THERE, UNFIT, WRONG, Agreement, Step, agree, ticks_of
 
 SHORT = apply(
@@ -215,12 +216,32 @@ def test_around_its_limits_a_jog_is_as_the_spec_says(asked: str) -> None:
         agree([*REST, *ticks_of(12, qd=speed), *ticks_of(3, jog=held, qd=speed)], SHORT)
 
 
+def in_options(situation: int) -> list[tuple[Settings, list[Step]]]:
+    """The options, each with the inputs that are tried with it in a situation.
+
+    By pairs: every option comes with every situation and with every input, and every situation with every input.
+    """
+    options, steps = (FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, TEACH_FIRST), list(FOR_OPTIONS.values())
+    count = len(options)
+    return [
+        (option, [step for k, step in enumerate(steps) if WHOLE or (k + situation) % count == number])
+        for number, option in enumerate(options)
+    ]
+
+
+def test_options_situations_and_inputs_are_tried_by_pairs() -> None:
+    tried = [(id(option), at, id(step)) for at in range(len(SITUATIONS)) for option, steps in in_options(at) for step in steps]
+    sizes = (4, len(SITUATIONS), len(FOR_OPTIONS))
+    for a, b in ((0, 1), (0, 2), (1, 2)):
+        assert len({(each[a], each[b]) for each in tried}) == sizes[a] * sizes[b]
+
+
 @pytest.mark.parametrize("name", SITUATIONS)
 def test_options_do_what_the_spec_says(name: str) -> None:
     stream = SITUATIONS[name][0]
-    for option in (FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, TEACH_FIRST):
+    for option, steps in in_options(list(SITUATIONS).index(name)):
         agreement = Agreement(option, AFTER["hold on"])
-        for step in FOR_OPTIONS.values():
+        for step in steps:
             agreement.agree([*stream, step])
 
 

@@ -206,7 +206,7 @@ def test_contact(arm: RTDEControlInterface, seen: RTDEReceiveInterface, controll
 
 
 def test_a_watchdog_ends_the_program_of_a_client_that_is_silent(arm: RTDEControlInterface) -> None:
-    assert arm.setWatchdog(5.0)
+    assert arm.setWatchdog(1.0)  # a busy machine is late by some tenths of a second
     for _ in range(20):
         assert arm.kickWatchdog()
         time.sleep(0.02)
@@ -226,9 +226,6 @@ def test_programs_of_ones_own(arm: RTDEControlInterface, seen: RTDEReceiveInterf
 
 
 def test_a_protective_stop(arm: RTDEControlInterface, seen: RTDEReceiveInterface) -> None:
-    """The last test of the module: the robot stands then."""
-    if not arm.isProgramRunning():
-        again(arm)
     arm.triggerProtectiveStop()
     until(seen.isProtectiveStopped)
 

@@ -15,6 +15,7 @@ from app.runs.coverage import claiming, rows_of, with_trials
 from app.runs.runner import RunOutcome
 from app.session.claims import CLAIMS
 from app.session.expectation_watch import Verdict
+from tests.items import each_of
 from tools import claims_page
 
 MUTANTS = declared()
@@ -42,7 +43,7 @@ ROW: dict[str, Any] = {
 """Of claims.json."""
 
 
-@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: f"{mutant.session}: {mutant.what}")
+@each_of(MUTANTS, lambda mutant: f"{mutant.session}: {mutant.what}")
 def test_a_mutant_fits_the_code_and_is_code(mutant: Mutant) -> None:
     ast.parse(mutated(mutant))
     assert mutant.replace != mutant.find

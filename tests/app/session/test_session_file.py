@@ -7,6 +7,7 @@ from app.files.checked import BadInput, convert, load, parse
 from app.session.prepare import MOUNTINGS, prepare
 from app.session.session_file import Session, Setup, bundled, find, folder
 from sim.arm.scenario import table
+from tests.items import each_of
 
 LEAST: dict[str, Any] = {"title": "least", "duration": 2.0}
 
@@ -219,7 +220,7 @@ LASTS = {"payload-by-itself": 42.0, "contact-3-compared": 17.0, "contact-4-compa
 rule after the other is held against a push below and one above its limit."""
 
 
-@pytest.mark.parametrize("name", bundled("sessions"))
+@each_of(bundled("sessions"))
 def test_every_bundled_session_is_valid_and_can_fail(name: str) -> None:
     session = load(find(name), Session)
     prepare(session, name)
@@ -227,7 +228,7 @@ def test_every_bundled_session_is_valid_and_can_fail(name: str) -> None:
     assert session.expectations
 
 
-@pytest.mark.parametrize("name", bundled("worlds"))
+@each_of(bundled("worlds"))
 def test_every_bundled_world_is_valid(name: str) -> None:
     assert prepare(convert({"world": name}, Setup, "w.yaml"), "w.yaml").scenario.world
 

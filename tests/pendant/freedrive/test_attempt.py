@@ -1,5 +1,7 @@
 """One attempt to start free-drive: what confirms it and when, to the tick (FD-7, FD-8)."""
 
+from itertools import product
+
 import pytest
 
 from pendant.all_settings import Settings, apply
@@ -7,6 +9,7 @@ from pendant.freedrive.attempt import CONFIRMING, Attempt, Outcome, reserved
 from pendant.signals.settings import ConfirmedBy
 from pendant.signals.sources import NONE, Presence
 from pendant.tick.modes import Phase
+from tests.items import each_of
 
 BUTTON = Presence("button")
 PUSH = Presence("push", by_hand=True)
@@ -116,9 +119,7 @@ def test_a_tap_is_over_with_its_tick(feedback: int, new: bool, signal: Presence)
 ALL = sorted(set().union(*CONFIRMING.values()))
 
 
-@pytest.mark.parametrize("by", ConfirmedBy)
-@pytest.mark.parametrize("first", ["button", "push", "force step"])
-@pytest.mark.parametrize("second", [*ALL, "digital input", "tap"])
+@each_of(product(ConfirmedBy, ["button", "push", "force step"], [*ALL, "digital input", "tap"]))
 def test_what_is_chosen_confirms(by: ConfirmedBy, first: str, second: str) -> None:
     """FD-8: any that can, another than the first, or one kind; a confirmation by hand is let go of."""
     chosen = {

@@ -1,6 +1,7 @@
 """What pulls at the free arm: probabilities from odds, who is felt, and for how long a doubt is shown."""
 
 import math
+from itertools import product
 
 import pytest
 
@@ -15,6 +16,7 @@ from pendant.guided.pull import (
     PullWatch,
     felt,
 )
+from tests.items import each_of
 
 ODDS = (NOT_TOLD, -800.0, -20.0, -1.0, -1e-9, 0.0, 1e-9, 1.0, 6.9, 6.91, 20.0, 800.0)
 
@@ -24,9 +26,7 @@ def of_one_whole(payload: float, sensor: float, rest: float) -> tuple[float, flo
     return math.log(payload / (sensor + rest)), math.log(sensor / (payload + rest))
 
 
-@pytest.mark.parametrize("who", list(HandFelt))
-@pytest.mark.parametrize("lost", ODDS)
-@pytest.mark.parametrize("stepped", ODDS)
+@each_of(product(HandFelt, ODDS, ODDS))
 def test_the_shares_are_probabilities(who: HandFelt, lost: float, stepped: float) -> None:
     shares = PullCauses(who, lost, 1.0, stepped).shares
     assert all(0.0 <= share <= 1.0 for share in shares)

@@ -1,6 +1,6 @@
 """The controller's words for what the pendant decides: every mode with every safety mode and law."""
 
-import pytest
+from itertools import product
 
 from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.controller_state import RUNTIME, SAFETY, UNLOCK_AFTER, ControllerState
@@ -16,11 +16,10 @@ from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import TICK_RATE, Law, Mode, Safety
 from tests.app.robot_interface.robot_bench import RobotBench
+from tests.items import each_of
 
 
-@pytest.mark.parametrize("safety", list(Safety))
-@pytest.mark.parametrize("law", list(Law))
-@pytest.mark.parametrize("idle", [False, True])
+@each_of(product(Safety, Law, [False, True]))
 def test_the_drives_are_off_where_no_safety_stop_has_to_be_unlocked(safety: Safety, law: Law, idle: bool) -> None:
     """Client interfaces: after a protective or a safeguard stop a robot stays RUNNING, and its safety mode tells."""
     state = ControllerState(mode=Mode.STOP, safety=safety, law=law, idle=idle, switched_off=True)
@@ -102,9 +101,7 @@ def test_idle_ends_when_the_drives_work_again() -> None:
     assert bench.cabinet.state.robot_mode is RobotMode.RUNNING
 
 
-@pytest.mark.parametrize("safety", list(Safety))
-@pytest.mark.parametrize("mode", list(Mode))
-@pytest.mark.parametrize("switched_off", [False, True])
+@each_of(product(Safety, Mode, [False, True]))
 def test_a_stop_of_the_pendants_is_a_protective_stop_to_clients(safety: Safety, mode: Mode, switched_off: bool) -> None:
     """STOP alone, after a dropped payload or a limit, is left by a reset only: what clients know as a protective stop."""
     state = ControllerState(mode=mode, safety=safety, switched_off=switched_off)

@@ -6,6 +6,7 @@ import pytest
 
 from app.robot_interface.controller.field_record import BEGIN, FieldRecord
 from app.robot_interface.controller.rtde_fields import CONSTANTS, FORMATS, INPUTS, OUTPUTS, SIZES
+from tests.items import each_of
 
 STRUCTS = {
     "BOOL": ">?", "UINT8": ">B", "UINT32": ">I", "UINT64": ">Q", "INT32": ">i", "DOUBLE": ">d",
@@ -18,7 +19,7 @@ def test_every_type_has_the_size_of_the_protocol() -> None:
     assert {kind: struct.calcsize(text) for kind, text in STRUCTS.items()} == SIZES
 
 
-@pytest.mark.parametrize("name", OUTPUTS)
+@each_of(OUTPUTS)
 def test_a_field_is_told_as_it_was_put(name: str) -> None:
     record, layout = FieldRecord(), STRUCTS[OUTPUTS[name]]
     count = len(struct.unpack(layout, bytes(SIZES[OUTPUTS[name]])))
