@@ -90,9 +90,9 @@ def serve(
 
     plan = recording_plan(record_rates, record_split)
     prepared = set_up(robot, config, any_file, "serve", shipped=FIRST_START)
-    keeper, lesson = None, None
+    keeper, cell = None, None
     if not fresh and (config is None or keep is not None):
-        prepared, keeper, lesson = as_kept(prepared, keep)
+        prepared, keeper, cell = as_kept(prepared, keep)
     network = Network(host, port_offset, programs, allowed_files(config, any_file)) if interfaces else None
     with serve_until_interrupted(
         prepared,
@@ -104,7 +104,7 @@ def serve(
         plan=plan,
         network=network,
         keeper=keeper,
-        lesson=lesson,
+        cell=cell,
     ) as serving:
         announce(f"Serving the {prepared.arm.name}", serving.site.link, serving.site.access.token is not None)
         if serving.interfaces is not None:

@@ -14,8 +14,7 @@ from pendant.settings.schema import SettingError
 from sim.arm.arm_file import Arm
 
 if TYPE_CHECKING:
-    from app.files.taught_program import Lesson
-    from app.kept_setup import Keeper
+    from app.kept_setup import Cell, Keeper
     from app.robot_interface.interfaces import RobotInterfaces
     from app.session.prepare import Prepared
     from app.session.session_file import AllowedFiles, Setup
@@ -72,18 +71,17 @@ Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", hel
 Keep = Annotated[
     Path | None,
     typer.Option(
-        help="Folder where set-up, settings and what was taught are kept; without it the user's own for such.",
+        help="Folder where the cell of each arm is kept; without it the user's own for such.",
         file_okay=False,
         show_default=False,
     ),
 ]
 
 
-def as_kept(prepared: "Prepared", folder: Path | None) -> tuple["Prepared", "Keeper | None", "Lesson | None"]:
-    """What was kept of the arm in place of what is shipped, with its keeper and what was taught. A file that cannot be used
+def as_kept(prepared: "Prepared", folder: Path | None) -> tuple["Prepared", "Keeper | None", "Cell | None"]:
+    """What was kept of the arm in place of what is shipped, with its keeper and the cell. A file that cannot be used
     is told of in a line, and stays as it is."""
-    from app.kept_setup import keeper_for, usual_folder
-    from app.session.prepare import prepare
+    from app.kept_setup import check_cell, keeper_for, usual_folder
 
     keeper = keeper_for(prepared.arm, folder or usual_folder())
     console = Console(soft_wrap=True)
@@ -91,9 +89,9 @@ def as_kept(prepared: "Prepared", folder: Path | None) -> tuple["Prepared", "Kee
         kept = None if keeper is None else keeper.read()
         if keeper is None or kept is None:
             return prepared, keeper, None
-        again = prepare(kept.setup, keeper.path.name)
+        again = check_cell(kept, keeper.path.name)
         console.print(escape(f"As kept in {keeper.path}; --fresh begins as shipped"))
-        return again, keeper, kept.taught
+        return again, keeper, kept
     except BadInput as refusal:
         console.print(escape(f"Not taken, and nothing is kept: {refusal}"))
         return prepared, None, None
@@ -151,10 +149,14 @@ def allowed_files(config: Path | None, any_file: bool) -> "AllowedFiles":
 
 def set_up(robot: str | None, config: Path | None, any_file: bool, command: str, *, shipped: "Setup") -> "Prepared":
     """What the options of a command ask for; `shipped` where no file says it."""
+    from app.files.checked import load
+    from app.kept_setup import Cell, is_cell
     from app.session.prepare import prepare
     from app.session.session_file import Setup, opened
 
-    setup = shipped if config is None else opened(config, Setup, any_file)
+    setup = shipped
+    if config is not None:
+        setup = load(config, Cell).setup if is_cell(config) else opened(config, Setup, any_file)
     if robot is not None:
         setup = msgspec.structs.replace(setup, robot=robot)
     return prepare(setup, command if config is None else config.name)

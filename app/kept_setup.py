@@ -1,32 +1,133 @@
-"""Set-ups as files: what runs, as a configuration; one that a page hands in, checked; and what is kept over a restart."""
+"""The cell of a user as one file: what it is now, one that a page hands in, checked, and what is kept over a restart."""
 
+import math
 import os
 import time
 from pathlib import Path
+from typing import Annotated, NamedTuple
 
 import msgspec
 import yaml
+from msgspec import Meta
+from msgspec.structs import replace
 
 from app.files.checked import BadInput, load, parse
 from app.files.library import robots, tools
 from app.files.taught_program import Lesson
+from app.files.yaml_text import parsed, read
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import Setup
 from pendant.all_settings import Settings, describe, value_of
 from pendant.equipment.tools import Tool
 from pendant.walls.definitions import AnyBorder
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import Scenario, ToolModel, table
+from sim.arm.scenario import Load, Scenario, ToolModel, table
+
+MOST_SCRIPT, LONGEST_NAME = 40_000, 40
+"""Of a script, and of the name of an input or output [characters]."""
+
+ScriptText = Annotated[str, Meta(max_length=MOST_SCRIPT)]
+Line = Annotated[str, Meta(pattern=r"^(input|output) \d{1,2}$")]
+LineName = Annotated[str, Meta(min_length=1, max_length=LONGEST_NAME)]
 
 OFTEN = 1.0
 """What changes is written at most once in this time [s]."""
 
 
-class Kept(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What is kept of a served robot over a restart."""
+class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """All that a user has made of one robot: what is kept over a restart, and the one file of the page."""
 
-    setup: Setup
+    setup: Setup  # arm, mounting, tools, payload, world, walls, settings
     taught: Lesson
+    without: list[LineName] = []  # tools that are shipped, and were taken off the table
+    in_use: str = ""  # the tool that the controller works with; "": the one that is mounted
+    script: ScriptText = ""  # in URScript; "": none
+    lines: dict[Line, LineName] = {}  # names of inputs and outputs, by what they are called else
+
+
+class CellNow(NamedTuple):
+    """What a cell is made of, as it is now; none of it is copied."""
+
+    arm: Arm
+    scenario: Scenario
+    settings: Settings
+    walls: tuple[AnyBorder, ...]
+    tools: tuple[Tool, ...]
+    payload_true: Load
+    payload_configured: Load
+    in_use: str
+    taught: Lesson
+    script: str
+    lines: dict[str, str]
+
+    def same(self, other: "CellNow | None") -> bool:
+        """Whether nothing is different."""
+        return other is not None and all(a is b or a == b for a, b in zip(self, other, strict=True))
+
+
+def cell_of(now: CellNow) -> Cell:
+    """A cell that begins as it is now."""
+    started = setup_of(now.arm, now.scenario, now.settings, walls=now.walls, tools=now.tools)
+    mounted, there = now.scenario.tool, {tool.name for tool in now.tools}
+    setup = replace(
+        started,
+        payload_true=now.payload_true,
+        payload_configured=now.payload_configured,
+        tools=[tool for tool in started.tools if mounted is None or tool.name != mounted.name],
+    )
+    return Cell(
+        setup=setup,
+        taught=now.taught,
+        without=[name for name in tools() if name not in there],
+        in_use="" if now.in_use == table(now.scenario)[0].name else now.in_use,
+        script=now.script,
+        lines=dict(now.lines),
+    )
+
+
+def any_cell(name: str, content: bytes, now: Cell) -> Cell:
+    """The cell in a file: a cell, or a file of one of its parts, whose other parts stay as they are `now`.
+
+    Raises:
+        BadInput: it is none of these, is for another arm, names a file of this machine, or does not fit together.
+    """
+    text = content.decode("utf-8", "replace")
+    said = parsed(text, name)
+    fields = set(said) if isinstance(said, dict) else set()
+    if "setup" in fields:
+        cell = parse(text, Cell, name)
+    elif fields and fields <= {*Lesson.__struct_fields__}:
+        cell = replace(now, taught=parse(text, Lesson, name))
+    elif fields == {"tools"}:
+        cell = replace(now, setup=replace(now.setup, tools=parse(text, Setup, name).tools), in_use="")
+    else:
+        cell = replace(now, setup=parse(text, Setup, name), in_use="")
+    if cell.setup.robot != now.setup.robot:
+        raise BadInput(name, "robot", cell.setup.robot, f"the arm that is served, {now.setup.robot}")
+    if isinstance(cell.setup.tool, str) and cell.setup.tool not in tools():
+        raise BadInput(name, "tool", cell.setup.tool, "the name of a shipped tool, or a tool in this file")
+    check_cell(cell, name)
+    return cell
+
+
+def is_cell(path: Path) -> bool:
+    """Whether a file is a cell, and not a configuration."""
+    said = parsed(read(path, path.name), path.name)
+    return isinstance(said, dict) and "setup" in said
+
+
+def check_cell(cell: Cell, where: str) -> Prepared:
+    """What a cell begins with. Raises BadInput: its parts do not fit together."""
+    prepared = prepare(cell.setup, where)
+    left = [tool for tool in prepared.scenario.tools if tool.name not in cell.without]
+    prepared = prepared._replace(scenario=replace(prepared.scenario, tools=left))
+    for number, waypoint in enumerate(cell.taught.waypoints):
+        if len(waypoint.q) != prepared.arm.n:
+            raise BadInput(where, f"taught.waypoints[{number}].q", waypoint.q, f"{prepared.arm.n} joint angles")
+    names = [tool.name for tool in table(prepared.scenario)]
+    if cell.in_use and cell.in_use not in names:
+        raise BadInput(where, "in_use", cell.in_use, f"a tool of the table: {', '.join(names)}")
+    return prepared
 
 
 def setup_of(arm: Arm, scenario: Scenario, settings: Settings, *, walls: tuple[AnyBorder, ...], tools: tuple[Tool, ...]) -> Setup:
@@ -53,7 +154,7 @@ def setup_of(arm: Arm, scenario: Scenario, settings: Settings, *, walls: tuple[A
 def _framed(tool: ToolModel | None, tools: tuple[Tool, ...]) -> ToolModel | None:
     """The tool at the flange, which is as it is, with its tool centre point as the table has it."""
     told = next((each for each in tools if tool is not None and each.name == tool.name), None)
-    return tool if tool is None or told is None else msgspec.structs.replace(tool, tcp=told.tcp, rpy=told.rpy)
+    return tool if tool is None or told is None else replace(tool, tcp=told.tcp, rpy=told.rpy)
 
 
 def _others(scenario: Scenario, tools: tuple[Tool, ...]) -> list[ToolModel]:
@@ -66,7 +167,7 @@ def _others(scenario: Scenario, tools: tuple[Tool, ...]) -> list[ToolModel]:
 
 def text_of(value: msgspec.Struct) -> str:
     """A value as the text of its file."""
-    return yaml.safe_dump(msgspec.to_builtins(value), sort_keys=False, allow_unicode=True)
+    return yaml.dump(msgspec.to_builtins(value), Dumper=yaml.CSafeDumper, sort_keys=False, allow_unicode=True)
 
 
 def handed_in(name: str, content: bytes, arm: Arm) -> Prepared:
@@ -84,7 +185,7 @@ def handed_in(name: str, content: bytes, arm: Arm) -> Prepared:
 
 
 class Keeper:
-    """Keeps set-up, settings and what was taught of one arm in a file, as they change.
+    """Keeps the cell of one arm in a file, as it changes.
 
     Attributes:
         path: of the file.
@@ -94,38 +195,32 @@ class Keeper:
     def __init__(self, folder: Path, arm: str) -> None:
         self.path = folder / f"{arm}.yaml"
         self.problem = ""
-        self._seen: tuple[object, ...] | None = None
+        self._seen: CellNow | None = None
         self._written = -OFTEN
 
-    def read(self) -> Kept | None:
+    def read(self) -> Cell | None:
         """What is kept; None: nothing yet.
 
         Raises:
             BadInput: the file is no such file, or what it says does not fit together.
         """
-        return load(self.path, Kept) if self.path.is_file() else None
+        return load(self.path, Cell) if self.path.is_file() else None
 
-    def see(
-        self,
-        lesson: Lesson,
-        arm: Arm,
-        scenario: Scenario,
-        settings: Settings,
-        *,
-        walls: tuple[AnyBorder, ...],
-        tools: tuple[Tool, ...],
-        now: float | None = None,
-    ) -> None:
-        """Write what has changed since it was seen first: all `walls` and `tools` as they are; `now` is the clock [s]."""
+    def see(self, cell: CellNow, *, now: float | None = None) -> None:
+        """Write what has changed since it was seen first; `now` is the clock [s], infinite to write at once."""
         clock = time.monotonic() if now is None else now
-        seen = (lesson, scenario, settings, walls, tools)
         if self._seen is None:
-            self._seen = seen
-        if self.problem or all(a is b for a, b in zip(seen, self._seen, strict=True)) or clock < self._written + OFTEN:
+            self._seen = cell
+        if self.problem or clock < self._written + OFTEN or cell.same(self._seen):
             return
-        self._seen, self._written = seen, clock
-        setup = setup_of(arm, scenario, settings, walls=walls, tools=tools)
-        self.problem = written(self.path, text_of(Kept(setup=setup, taught=lesson)))
+        self._seen = cell
+        if math.isfinite(clock):
+            self._written = clock
+        self.keep(cell_of(cell))
+
+    def keep(self, cell: Cell) -> None:
+        """Write this cell."""
+        self.problem = written(self.path, text_of(cell))
 
 
 def written(path: Path, text: str) -> str:

@@ -13,8 +13,7 @@ import msgspec
 from app.ending import ending
 from app.files.checked import BadInput
 from app.files.library import robots
-from app.files.taught_program import Lesson
-from app.kept_setup import Keeper, keeper_for
+from app.kept_setup import Cell, Keeper, check_cell, keeper_for
 from app.log.live import LiveRecording
 from app.log.recording_plan import ALL, RecordingPlan
 from app.log_reading.playback import Player
@@ -58,7 +57,7 @@ def serve_until_interrupted(
     plan: RecordingPlan = ALL,
     network: Network | None = None,
     keeper: Keeper | None = None,
-    lesson: Lesson | None = None,
+    cell: Cell | None = None,
 ) -> Iterator[Serving]:
     """Serve; the body runs once the page is up; then wait for Ctrl-C or SIGTERM, which end all in seconds.
 
@@ -72,7 +71,7 @@ def serve_until_interrupted(
         plan: how often what is recorded, and how long a file of it is.
         network: where the robot's network interfaces are to be; None for the page alone.
         keeper: as `app.web.server.serve`.
-        lesson: as `app.web.server.serve`.
+        cell: as `app.web.server.serve`.
 
     Raises:
         BadInput: an address cannot be used.
@@ -90,7 +89,7 @@ def serve_until_interrupted(
                 recording.start().result()
             scripts = arms.scripts(prepared.arm)
             robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
-            page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson, arms=arms)
+            page = partial(robot, scripts=scripts, keeper=keeper, cell=cell, arms=arms)
             served = _serve(partial(page, host=host, open_browser=open_browser), port=port, usual=usual)
             try:
                 yield Serving(served, interfaces)
@@ -173,19 +172,20 @@ class ServedArms:
             self._beside.close()
             self._beside = None
 
-    def ready(self, name: str) -> ReadyArm:
+    def ready(self, name: str, held: Cell | None = None) -> ReadyArm:
         """See `ArmChange`."""
         shipped = prepare(msgspec.structs.replace(FIRST_START, robot=name), "the page")
         keeper = None if self._folder is None else keeper_for(shipped.arm, self._folder)
-        prepared, kept = shipped, None
+        prepared, cell = shipped, held
         try:
-            kept = None if keeper is None else keeper.read()
-            if kept is not None:
-                prepared = prepare(kept.setup, "kept")
+            if cell is None and keeper is not None:
+                cell = keeper.read()
+            if cell is not None:
+                prepared = check_cell(cell, "kept")
         except BadInput:  # a file that cannot be used stays as it is, and nothing is kept
-            keeper = kept = None
+            keeper = cell = None
         simulate(prepared)
-        return ReadyArm(prepared, keeper, None if kept is None else kept.taught, meshes_of(prepared.arm))
+        return ReadyArm(prepared, keeper, cell, meshes_of(prepared.arm))
 
     def bring(self, arm: ReadyArm) -> BroughtArm:
         """See `ArmChange`."""

@@ -3,8 +3,7 @@
 from typing import NamedTuple, Protocol
 
 from app.files.library import mesh_path
-from app.files.taught_program import Lesson
-from app.kept_setup import Keeper
+from app.kept_setup import Cell, Keeper
 from app.robot_interface.interfaces import RobotInterfaces
 from app.session.prepare import Prepared
 from app.urscript.running.script_runner import ScriptRunner
@@ -16,7 +15,7 @@ class ReadyArm(NamedTuple):
 
     prepared: Prepared
     keeper: Keeper | None
-    lesson: Lesson | None
+    cell: Cell | None
     meshes: dict[str, bytes]
 
 
@@ -36,8 +35,12 @@ class ArmChange(Protocol):
         """The arms that there are."""
         ...
 
-    def ready(self, name: str) -> ReadyArm:
-        """An arm, checked and ready. Raises BadInput: it cannot be simulated as it was kept."""
+    def ready(self, name: str, held: Cell | None = None) -> ReadyArm:
+        """An arm, checked and ready, with the cell that the page `held` of it, or else that was kept.
+
+        Raises:
+            BadInput: it cannot be simulated like that.
+        """
         ...
 
     def bring(self, arm: ReadyArm) -> BroughtArm:

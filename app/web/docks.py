@@ -2,12 +2,16 @@
 
 import viser
 
+from app.files.taught_program import Lesson
 from app.kept_setup import Keeper
 from app.log.live import LiveRecording
 from app.robot_interface.interfaces import RobotInterfaces
 from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.guard import Guard
+from app.web.cell.cell_tab import CellTab
+from app.web.cell.work_cell import WorkCell
 from app.web.lab.lab_tab import Lab
+from app.web.lab.setup import LabSetup
 from app.web.panel.journal import Journal
 from app.web.panel.main_bar import Taught
 from app.web.panel.mode_panel import Panel
@@ -19,21 +23,45 @@ from app.web.tabs.contact_log import Contacts
 from app.web.tabs.jog_tab import JogTab
 from app.web.tabs.network_tab import NetworkTab
 from app.web.tabs.plots import Plots
-from app.web.tabs.script_tab import ScriptTab
+from app.web.tabs.script_tab import EXAMPLE, ScriptTab
 from app.web.tabs.settings_tab import SettingsTab
 from app.web.tabs.teach_tab import Teach
 from app.web.tabs.tools_tab import ToolsTab
 from app.web.walls.walls_tab import WallsTab
-from app.web.widgets import style, svg
+from app.web.widgets import style
 from app.web.widgets.drawn_parts import DrawnParts
-from app.web.widgets.svg import Colour
 from pendant.events.event import Event
 from pendant.program.jog_move import MoveThere
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
-LEFT = 340
+LEFT = 348
 """Width of the left docks [pixels]."""
+
+
+class OnPage:
+    """What of the cell is on the page alone."""
+
+    def __init__(self, teach: Teach, script: ScriptTab | None) -> None:
+        self._teach, self._script = teach, script
+        self._other = ""  # the script of a page that has no tab for it
+
+    def taught(self) -> Lesson:
+        """See `Desktop`."""
+        return self._teach.lesson
+
+    def script(self) -> str:
+        """See `Desktop`; the example that the tab begins with is none."""
+        text = self._other if self._script is None else self._script.text.value
+        return "" if text == EXAMPLE else text
+
+    def show(self, taught: Lesson, script: str) -> None:
+        """See `Desktop`."""
+        self._teach.take(taught)
+        if self._script is None:
+            self._other = script
+        elif self.script() != script:
+            self._script.text.value = script or EXAMPLE
 
 
 class Docks:
@@ -52,7 +80,7 @@ class Docks:
         scripts: ScriptRunner | None,
         keeper: Keeper | None,
     ) -> None:
-        self._loop, self._arm, self._keeper = loop, arm, keeper
+        self._loop = loop
         self._read = 0
         gui = server.gui
         self.parts = DrawnParts(gui, loop.troubles)
@@ -67,10 +95,14 @@ class Docks:
             self.axes = AxesTab(gui, loop, arm)
         with self._upper.add_tab("Walls") as self._walls_dock:
             self.walls = WallsTab(server, guard, loop)
-        with self._upper.add_tab("Lab") as self._lab_dock:
-            self.lab = Lab(gui, loop, hand, arm, interfaces=interfaces)
         with self._upper.add_tab("Tools") as self._tools_dock:
             self.tools = ToolsTab(server, guard, loop, arm)
+        with self._upper.add_tab("Cell") as self._cell_dock:
+            self.cell = CellTab(gui, self.panel.bar.home)
+            setup = LabSetup(gui, loop, arm)
+            self.cell.names(gui)
+        with self._upper.add_tab("Lab") as self._lab_dock:
+            self.lab = Lab(gui, loop, hand, arm, setup=setup, interfaces=interfaces)
         with self._upper.add_tab("Settings") as self.settings_dock:
             self.settings = SettingsTab(gui, self.settings_dock, loop, arm.n)
         self._lower = gui.add_panel()
@@ -94,6 +126,10 @@ class Docks:
         bar = self.panel.bar
         bar.taught, bar.ended, bar.scripts = self._taught, self.teach.ended, scripts
         self.jog.also(bar.start, self._start)
+        self.work = WorkCell(loop, arm, OnPage(self.teach, self.script), keeper)
+        self.cell.serve(self.work)
+        self.lab.scenarios.lend, self.lab.start_over = self.work.lend, self.work.start_over
+        self.lab.wires.names = lambda: self.work.lines
         self._upper.dock_left()
         self._upper.set_width(LEFT)
         self._lower.dock_below(self._upper)
@@ -103,8 +139,14 @@ class Docks:
             self.lab.restart,
             self.lab.drop,
             self.lab.setup.begin,
-            self.lab.setup.save,
-            self.lab.setup.load,
+            bar.home,
+            self.cell.adopt,
+            self.cell.save,
+            self.cell.load,
+            self.cell.undo,
+            self.cell.redo,
+            self.cell.yes,
+            self.cell.no,
             self.settings.defaults,
             self.settings.undo,
             self.settings.save,
@@ -178,7 +220,8 @@ class Docks:
             changed.append(draw("the tab Script", self.script.show, self._script_dock))
         if self.network is not None:
             changed.append(draw("the tab Network", self.network.show, self._network_dock))
-        draw("what is kept for the next start", self.keep, self._teach_dock)
+        changed.append(draw("the tab Cell", self.cell.show, self._cell_dock))
+        draw("what is kept for the next start", self.keep, self._cell_dock)
         return any(changed)
 
     def skip(self) -> None:
@@ -186,18 +229,5 @@ class Docks:
         self._read = len(self._loop.events(0))
 
     def keep(self, *, now: float | None = None) -> None:
-        """Have what changed kept for the next start; `now` is the clock, which says whether it is time to."""
-        keeper = self._keeper
-        if keeper is None or keeper.problem:
-            return
-        keeper.see(
-            self.teach.lesson,
-            self._arm,
-            self._loop.scenario,
-            self._loop.settings,
-            walls=self._loop.walls,
-            tools=self._loop.tools,
-            now=now,
-        )
-        if keeper.problem:
-            self.teach.message.show(svg.note("Not kept for the next start", keeper.problem, Colour.AMBER))
+        """Take in what changed, and have it kept for the next start; `now` is the clock, which says whether it is time to."""
+        self.work.see(now=now)

@@ -9,7 +9,7 @@ from pendant.decision import Decision
 from pendant.equipment.tools import Tool
 from pendant.events.event import Event, Kind, Values
 from pendant.walls.definitions import AnyBorder
-from sim.arm.scenario import Scenario
+from sim.arm.scenario import Load, Scenario
 from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
 from sim.run.beginnings import Script
@@ -60,6 +60,11 @@ class Running(Protocol):
     @property
     def tools(self) -> tuple[Tool, ...]:
         """The pendant's table of tools as it is now."""
+        ...
+
+    @property
+    def payload_true(self) -> Load:
+        """What is truly attached beyond the tool, without what a gripper holds."""
         ...
 
     @property

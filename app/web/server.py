@@ -12,8 +12,7 @@ from typing import NamedTuple
 import viser
 
 from app.files.checked import BadInput
-from app.files.taught_program import Lesson
-from app.kept_setup import Keeper
+from app.kept_setup import Cell, Keeper
 from app.log.live import LiveRecording
 from app.robot_interface.interfaces import RobotInterfaces
 from app.urscript.running.script_runner import ScriptRunner
@@ -69,6 +68,7 @@ class Served(Site):
         self._shown = -1  # tick of the last picture
         self._frame = 0
         self._changing = self._still_page = False  # another arm is made ready; it runs, and is not shown yet
+        self._cells: dict[str, Cell] = {}  # of arms that were here before
         self.recording, self._around = around.recording, around
         self._furnish(arm, scenario, meshes, around)
         self.server.on_client_connect(self._welcome)
@@ -120,10 +120,11 @@ class Served(Site):
 
     async def _go_over(self, arms: ArmChange, name: str) -> None:
         self.lab.setup.message.show(svg.note("Another arm", f"The {name} is made ready.", Colour.BLUE))
-        ready = await asyncio.to_thread(arms.ready, name)
+        ready = await asyncio.to_thread(arms.ready, name, self._cells.get(name))
         for client in self.server.get_clients():
             self._let_go(client)
         self.docks.keep(now=math.inf)
+        self._cells[self._arm.name] = self.docks.work.mine()
         self._still_page = True
         brought = await asyncio.to_thread(arms.bring, ready)
         prepared = ready.prepared
@@ -132,8 +133,8 @@ class Served(Site):
         around = self._around._replace(interfaces=brought.interfaces, scripts=brought.scripts, keeper=ready.keeper)
         self._furnish(prepared.arm, prepared.scenario, ready.meshes, around)
         self.docks.skip()
-        if ready.lesson is not None:
-            self.docks.teach.begin_with(ready.lesson)
+        if ready.cell is not None:
+            self.docks.work.begin_with(ready.cell)
         for number, client in self.server.get_clients().items():
             await self._welcome(client)
             if number in dark:
@@ -238,7 +239,7 @@ def serve(
     interfaces: RobotInterfaces | None = None,
     scripts: ScriptRunner | None = None,
     keeper: Keeper | None = None,
-    lesson: Lesson | None = None,
+    cell: Cell | None = None,
     arms: ArmChange | None = None,
 ) -> Served:
     """Serve the web app of a running loop.
@@ -251,7 +252,7 @@ def serve(
         interfaces: the robot on the network, for the page to show; None where there is none.
         scripts: runs programs in URScript; None: the page has no tab for them.
         keeper: keeps set-up, settings and what is taught for the next start; None: nobody does.
-        lesson: what was taught before; None: nothing.
+        cell: what was kept, from which the loop has begun; None: nothing.
         arms: lets the page go over to another arm; None: it cannot.
 
     Raises:
@@ -272,8 +273,8 @@ def serve(
         port=port,
         around=Surround(recording, interfaces, scripts, keeper, arms),
     )
-    if lesson is not None:
-        served.docks.teach.begin_with(lesson)
+    if cell is not None:
+        served.docks.work.begin_with(cell)
     if open_browser:
         webbrowser.open(served.link)
     return served

@@ -40,6 +40,11 @@ class Payload:
         self._speed = np.zeros(3)  # of the fall, in W [m/s]
 
     @property
+    def own(self) -> Load:
+        """The load that is attached, without what a gripper holds; once it is dropped, none."""
+        return self._own
+
+    @property
     def falling(self) -> bool:
         """It has been dropped, and nothing was attached since."""
         return self._fallen is not None

@@ -18,7 +18,7 @@ from pendant.equipment.tools import Tool
 from pendant.events.event import Event, Kind, Values
 from pendant.tick.modes import TICK, TICK_RATE
 from pendant.walls.definitions import AnyBorder
-from sim.arm.scenario import Scenario
+from sim.arm.scenario import Load, Scenario
 from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
 from sim.run.beginnings import Beginnings, Origin, Script
@@ -93,6 +93,11 @@ class Loop:
     def tools(self) -> tuple[Tool, ...]:
         """The pendant's table of tools as it is now."""
         return self.simulation.tools
+
+    @property
+    def payload_true(self) -> Load:
+        """What is truly attached beyond the tool, without what a gripper holds."""
+        return self.simulation.plant.payload.own
 
     @property
     def walls(self) -> tuple[AnyBorder, ...]:

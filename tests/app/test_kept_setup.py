@@ -1,21 +1,22 @@
 """Set-ups as files, and what is kept over a restart."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from msgspec.structs import replace
 
-from app.command_options import as_kept
+from app.command_options import as_kept, set_up
 from app.files.checked import BadInput, parse
 from app.files.library import load_arm, load_tool
 from app.files.taught_program import Lesson, TaughtStep
-from app.kept_setup import OFTEN, Keeper, handed_in, keeper_for, setup_of, text_of, usual_folder
+from app.kept_setup import OFTEN, Cell, CellNow, Keeper, any_cell, cell_of, handed_in, keeper_for, setup_of, text_of, usual_folder
 from app.session.prepare import prepare
 from app.session.session_file import Session, Setup, bundled, find, opened
 from pendant.all_settings import Settings, apply
 from pendant.walls.definitions import Area
 from pendant.walls.shapes import Box
-from sim.arm.scenario import table
+from sim.arm.scenario import Load, table
 from tests.items import each_of
 
 ARM = load_arm("ur5e")
@@ -25,6 +26,25 @@ TABLE = tuple(table(SCENARIO))
 SETTINGS = apply(Settings(), {"free_drive.period": 7.0, "contact.on": True})
 WALL = Area(name="box 1", shape=Box(size=(0.4, 0.4, 0.4)), on=False)
 LESSON = Lesson(steps=[TaughtStep(do="wait", seconds=2.0)], repeat=0)
+
+
+def now(taught: Lesson | None = None, **changes: Any) -> CellNow:
+    """A cell as it is now."""
+    scenario = changes.get("scenario", SCENARIO)
+    cell = CellNow(
+        arm=ARM,
+        scenario=scenario,
+        settings=Settings(),
+        walls=(),
+        tools=TABLE,
+        payload_true=scenario.payload_true,
+        payload_configured=scenario.payload_configured,
+        in_use=table(scenario)[0].name,
+        taught=taught or Lesson(),
+        script="",
+        lines={},
+    )
+    return cell._replace(**changes)
 
 
 def test_a_set_up_comes_back_from_its_file_as_it_was() -> None:
@@ -79,19 +99,19 @@ def test_a_file_that_makes_no_sense_is_refused_in_a_line(content: bytes, said: s
 
 def test_what_changes_is_written_and_read_again_and_what_does_not_is_not(tmp_path: Path) -> None:
     keeper, scenario, settings, lesson = Keeper(tmp_path / "new", "ur5e"), PREPARED.scenario, Settings(), Lesson()
-    keeper.see(lesson, ARM, scenario, settings, walls=(), tools=TABLE, now=0.0)
-    keeper.see(lesson, ARM, scenario, settings, walls=(), tools=TABLE, now=10.0)
+    keeper.see(now(lesson, scenario=scenario, settings=settings, walls=()), now=0.0)
+    keeper.see(now(lesson, scenario=scenario, settings=settings, walls=()), now=10.0)
     assert keeper.read() is None
-    keeper.see(LESSON, ARM, scenario, settings, walls=(), tools=TABLE, now=20.0)
-    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), tools=TABLE, now=20.0 + 0.9 * OFTEN)
+    keeper.see(now(LESSON, scenario=scenario, settings=settings, walls=()), now=20.0)
+    keeper.see(now(LESSON, scenario=scenario, settings=SETTINGS, walls=()), now=20.0 + 0.9 * OFTEN)
     kept = keeper.read()
     assert kept is not None
     assert (kept.taught, kept.setup.settings) == (LESSON, {})
-    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), tools=TABLE, now=20.0 + OFTEN)
+    keeper.see(now(LESSON, scenario=scenario, settings=SETTINGS, walls=()), now=20.0 + OFTEN)
     kept = keeper.read()
     assert kept is not None
     assert prepare(kept.setup, "kept").settings == SETTINGS
-    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(WALL,), tools=TABLE, now=30.0)
+    keeper.see(now(LESSON, scenario=scenario, settings=SETTINGS, walls=(WALL,)), now=30.0)
     kept = keeper.read()
     assert kept is not None
     assert prepare(kept.setup, "kept").scenario.walls == [WALL]
@@ -101,20 +121,21 @@ def test_what_changes_is_written_and_read_again_and_what_does_not_is_not(tmp_pat
 def test_what_cannot_be_written_is_said_and_not_tried_again(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     keeper = Keeper(tmp_path / "file", "ur5e")
-    keeper.see(Lesson(), ARM, PREPARED.scenario, SETTINGS, walls=(), tools=TABLE, now=0.0)
-    keeper.see(LESSON, ARM, PREPARED.scenario, SETTINGS, walls=(), tools=TABLE, now=5.0)
+    keeper.see(now(scenario=PREPARED.scenario, settings=SETTINGS, walls=()), now=0.0)
+    keeper.see(now(LESSON, scenario=PREPARED.scenario, settings=SETTINGS, walls=()), now=5.0)
     assert "cannot be written" in keeper.problem
 
 
 def test_the_next_start_begins_with_what_was_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shipped = prepare(Setup(), "serve")
-    before, keeper, lesson = as_kept(shipped, tmp_path)
-    assert (before, lesson) == (shipped, None)
+    before, keeper, cell = as_kept(shipped, tmp_path)
+    assert (before, cell) == (shipped, None)
     assert keeper is not None
-    keeper.see(Lesson(), ARM, shipped.scenario, shipped.settings, walls=(), tools=TABLE, now=0.0)
-    keeper.see(LESSON, ARM, replace(shipped.scenario, tool=load_tool("sphere")), SETTINGS, walls=(), tools=TABLE, now=5.0)
-    after, _, lesson = as_kept(shipped, tmp_path)
-    assert (lesson, after.settings) == (LESSON, SETTINGS)
+    keeper.see(now(scenario=shipped.scenario, settings=shipped.settings, walls=()), now=0.0)
+    keeper.see(now(LESSON, scenario=replace(shipped.scenario, tool=load_tool("sphere")), settings=SETTINGS), now=5.0)
+    after, _, cell = as_kept(shipped, tmp_path)
+    assert cell is not None
+    assert (cell.taught, after.settings) == (LESSON, SETTINGS)
     assert after.scenario.tool == load_tool("sphere")
     assert f"As kept in {tmp_path}" in capsys.readouterr().out.replace("\n", "")
 
@@ -142,3 +163,59 @@ def test_the_usual_folder_is_where_programs_keep_their_state(monkeypatch: pytest
     assert usual_folder() == tmp_path / "pendant"
     monkeypatch.setenv("XDG_STATE_HOME", "relative")
     assert usual_folder() == Path.home() / ".local" / "state" / "pendant"
+
+
+def test_a_cell_comes_back_from_its_file_with_all_of_its_parts() -> None:
+    cell = cell_of(
+        now(
+            LESSON,
+            settings=SETTINGS,
+            walls=(WALL,),
+            payload_true=Load(mass=2.0),
+            payload_configured=Load(mass=1.5, com=[0.0, 0.0, 0.08]),
+            in_use="flange",
+            script="textmsg(1)",
+            lines={"input 0": "part there"},
+        )
+    )
+    empty = cell_of(now())
+    again = any_cell("cell.yaml", text_of(cell).encode(), empty)
+    assert again == cell
+    assert again.setup.payload_configured.mass == 1.5
+    assert empty != cell
+
+
+def test_todays_files_of_parts_leave_the_other_parts_as_they_are() -> None:
+    cell = cell_of(now(LESSON, settings=SETTINGS, script="textmsg(1)"))
+    taught = any_cell("taught.yaml", text_of(Lesson()).encode(), cell)
+    assert taught == replace(cell, taught=Lesson())
+    setup = any_cell("setup.yaml", text_of(replace(cell.setup, seed=9)).encode(), cell)
+    assert setup == replace(cell, setup=replace(cell.setup, seed=9))
+    tools = any_cell("tools.yaml", b"tools: []", cell)
+    assert (tools.taught, tools.setup.settings, tools.setup.tools) == (LESSON, cell.setup.settings, [])
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"setup: {robot: ur10e}\ntaught: {}\n", "the arm that is served"),
+        (b"setup: {tool: mine.yaml}\ntaught: {}\n", "tool"),
+        (b"setup: {}\ntaught: {}\nin_use: gone\n", "a tool of the table"),
+        (b"setup: {}\ntaught: {}\nlines: {output x: a}\n", "lines"),
+        (b"waypoints: [{name: A, q: [0.0], position: [0, 0, 0], quaternion: [1, 0, 0, 0]}]\n", "6 joint angles"),
+        (b"[1]", "expected a mapping"),
+    ],
+)
+def test_a_cell_that_makes_no_sense_is_refused_in_a_line(content: bytes, said: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        any_cell("cell.yaml", content, cell_of(now()))
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_file_of_a_cell_is_a_configuration_too(tmp_path: Path) -> None:
+    path = tmp_path / "cell.yaml"
+    path.write_text(text_of(Cell(setup=Setup(seed=9), taught=LESSON)))
+    assert set_up(None, path, False, "serve", shipped=Setup()).scenario.seed == 9
+    path.write_text(text_of(Setup(seed=8)))
+    assert set_up(None, path, False, "serve", shipped=Setup()).scenario.seed == 8

@@ -9,7 +9,7 @@ import pytest
 
 from app.files.checked import BadInput
 from app.files.taught_program import Lesson, TaughtStep
-from app.kept_setup import Keeper
+from app.kept_setup import Cell, Keeper
 from app.log.live import LiveRecording
 from app.log_reading.reader import read
 from app.robot_interface.controller.robot_words import RobotMode
@@ -137,15 +137,16 @@ end'''
 
 def test_another_arm_begins_as_it_was_kept(loop: Loop, tmp_path: Path) -> None:
     keeper, settings = Keeper(tmp_path, "ur10e"), apply(Settings(), {"free_drive.period": 7.0})
-    ur10e, lesson = prepare(Setup(robot="ur10e"), "test"), Lesson(steps=[TaughtStep(do="wait", seconds=2.0)])
-    keeper.see(Lesson(), ur10e.arm, ur10e.scenario, Settings(), walls=(), tools=(), now=0.0)
-    keeper.see(lesson, ur10e.arm, ur10e.scenario, settings, walls=(), tools=(), now=5.0)
+    lesson = Lesson(steps=[TaughtStep(do="wait", seconds=2.0)])
+    cell = Cell(setup=Setup(robot="ur10e", settings={"free_drive.period": 7.0}), taught=lesson)
+    keeper.keep(cell)
     ready = ServedArms(loop, LiveRecording(loop, tmp_path), folder=tmp_path).ready("ur10e")
-    assert (ready.prepared.settings, ready.lesson) == (settings, lesson)
+    assert (ready.prepared.settings, ready.cell) == (settings, cell)
     assert ready.keeper is not None
     keeper.path.write_text("[")
     ready = ServedArms(loop, LiveRecording(loop, tmp_path), folder=tmp_path).ready("ur10e")
     assert (ready.prepared.settings, ready.keeper) == (Settings(), None)
+    assert ServedArms(loop, LiveRecording(loop, tmp_path)).ready("ur10e", cell).cell == cell, "the page held it"
     assert ServedArms(loop, LiveRecording(loop, tmp_path)).ready("ur10e").keeper is None
 
 

@@ -17,7 +17,7 @@ from tests.e2e.finger import middle, tap
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
 
-UPPER = ("Jog", "Axes", "Walls", "Lab", "Tools", "Settings", "Teach")
+UPPER = ("Jog", "Axes", "Walls", "Tools", "Cell", "Lab", "Settings", "Teach")
 LOWER = ("Contacts", "Plots", "Record", "Events")
 """Tabs of the two docks, of which one each is seen at once."""
 

@@ -115,8 +115,7 @@ def test_free_only_the_elbow(visit: Visit, cell: Cell, width: int, height: int) 
 def test_change_the_arm(visit: Visit, cell: Cell, width: int, height: int) -> None:
     """The server goes on, and so does the page of a second window."""
     page, other = visit(width, height), visit(width, height)
-    open_tab(page, "Lab")
-    click(page, "Set-up")
+    open_tab(page, "Cell")
     choose(page, "Arm", "ur10e")
     cell.wait(lambda: cell.served.lab.setup.arm.value == "ur10e", "it is chosen")
     click(page, "Restart with this set-up")

@@ -37,7 +37,14 @@ class Lab:
     """The laboratory's tab."""
 
     def __init__(
-        self, gui: viser.GuiApi, loop: Running, hand: VirtualHand, arm: Arm, *, interfaces: RobotInterfaces | None = None
+        self,
+        gui: viser.GuiApi,
+        loop: Running,
+        hand: VirtualHand,
+        arm: Arm,
+        *,
+        setup: LabSetup,
+        interfaces: RobotInterfaces | None = None,
     ) -> None:
         self._gui, self._loop, self._hand, self._arm = gui, loop, hand, arm
         self._shown: object = None
@@ -51,7 +58,8 @@ class Lab:
         self._payload()
         self._faults()
         self.wires = Wires(gui, loop, interfaces)
-        self.setup = LabSetup(gui, loop, arm)
+        self.setup = setup
+        self.start_over: Callable[[], object] = loop.reset
         self._connect()
         self._connect_gripper()
 
@@ -144,7 +152,7 @@ class Lab:
         @self.restart.on_click
         async def _(_: viser.GuiEvent) -> None:
             self._shown = None
-            self._loop.reset()
+            self.start_over()
 
         @self.drop.on_click
         async def _(_: viser.GuiEvent) -> None:

@@ -4,6 +4,7 @@ They are grouped by what they teach, and found by words of their titles and text
 """
 
 import functools
+from collections.abc import Callable
 
 import viser
 
@@ -71,6 +72,7 @@ class Scenarios:
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop = loop
+        self.lend: Callable[[], None] = lambda: None  # told before a scenario runs
         self._names = {session.title: name for name, session in scenarios().items() if session.robot == arm.name}
         self.text = Html(gui)
         if not self._names:
@@ -116,5 +118,6 @@ class Scenarios:
         prepared = prepare(session, name)
         actions = session.timeline if play else []
         joints = prepared.arm.chain.joints
+        self.lend()
         self._loop.paused = False
         self._loop.begin(lambda: simulate(prepared), lambda: Timeline(actions, joints, prepared.program))

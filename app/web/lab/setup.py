@@ -1,4 +1,4 @@
-"""What a laboratory sets up before the arm is switched on: mounting, tool, world, seed, mismatch."""
+"""What is set up before the arm is switched on: arm, mounting, tool, world, seed, mismatch."""
 
 import math
 from collections.abc import Awaitable, Callable
@@ -8,7 +8,6 @@ import viser
 
 from app.files.checked import BadInput, load
 from app.files.library import load_tool, tools
-from app.kept_setup import handed_in, setup_of, text_of
 from app.runs.runner import simulate
 from app.session.prepare import MOUNTINGS, Prepared
 from app.session.session_file import WorldSection, bundled, folder
@@ -24,12 +23,12 @@ NOTHING = "nothing"
 
 
 class LabSetup:
-    """The set-up's part of the laboratory: takes effect when the simulation begins again."""
+    """A folder of the cell's tab: takes effect when the simulation begins again."""
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop, self._arm = loop, arm
         self._change_arm: Callable[[str], Awaitable[None]] | None = None
-        with gui.add_folder("Set-up", expand_by_default=False):
+        with gui.add_folder("Robot and world"):
             self.arm = gui.add_dropdown("Arm", (arm.name,), hint="Another one begins as it was kept, or as shipped")
             self.mounting = gui.add_dropdown("Mounting", (AS_IS, *MOUNTINGS))
             self.tilt = gui.add_slider("Tilt [°]", min=-90, max=90, step=5, initial_value=0)
@@ -39,8 +38,6 @@ class LabSetup:
             self.mismatch = gui.add_checkbox("Controller mismatch", True)
             self.begin = gui.add_button("Restart with this set-up", color="gray")
             self.message = Html(gui)
-            self.save = gui.add_button("Save set-up as file", color="gray", hint="A configuration: pendant serve --config")
-            self.load = gui.add_upload_button("Load a set-up", mime_type=".yaml", color="gray")
 
         @self.begin.on_click
         async def _(_: viser.GuiEvent) -> None:
@@ -49,34 +46,11 @@ class LabSetup:
                 return
             self._begin(Prepared(self._arm, self.chosen(), self._loop.settings, None, "the page"))
 
-        @self.save.on_click
-        async def _(event: viser.GuiEvent) -> None:
-            if event.client is not None:
-                event.client.send_file_download("setup.yaml", self.file(), save_immediately=True)
-
-        @self.load.on_upload
-        async def _(_: viser.GuiEvent) -> None:
-            self.read(self.load.value.name, self.load.value.content)
-
     def offer_arms(self, names: tuple[str, ...], change: Callable[[str], Awaitable[None]]) -> None:
         """Have these arms to choose from; `change` goes over to one."""
         self._change_arm = change
         self.arm.options = names if self._arm.name in names else (self._arm.name, *names)
         self.arm.value = self._arm.name
-
-    def file(self) -> bytes:
-        """The running set-up with its settings, as a configuration."""
-        loop = self._loop
-        return text_of(setup_of(self._arm, loop.scenario, loop.settings, walls=loop.walls, tools=loop.tools)).encode()
-
-    def read(self, name: str, content: bytes) -> None:
-        """Begin with the set-up of a file, or say in a line why not."""
-        try:
-            prepared = handed_in(name, content, self._arm)
-        except BadInput as refusal:
-            self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
-            return
-        self._begin(prepared)
 
     def _begin(self, prepared: Prepared) -> None:
         try:
@@ -89,7 +63,7 @@ class LabSetup:
 
     def chosen(self) -> Scenario:
         """What the controls ask for; what they leave is as in the running scenario."""
-        now = self._loop.scenario
+        now, fitting = self._loop.scenario, self._loop.latest().decision.fitting
         mounting = now.mounting if self.mounting.value == AS_IS else MOUNTINGS[self.mounting.value]
         tilt = math.radians(float(self.tilt.value))
         world = now.world
@@ -104,6 +78,8 @@ class LabSetup:
             tools=[
                 tool for tool in self._loop.tools if isinstance(tool, ToolModel)
             ],  # as they were edited; the app has no others
+            payload_true=self._loop.payload_true,
+            payload_configured=now.payload_configured if fitting is None else fitting.load,
             world=world,
             walls=list(self._loop.walls),
             seed=int(self.seed.value),

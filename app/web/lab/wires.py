@@ -1,6 +1,6 @@
 """What is wired to the robot: safety and digital inputs as switches of the laboratory, and its digital outputs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import viser
@@ -38,11 +38,12 @@ class Wires:
 
     def __init__(self, gui: viser.GuiApi, loop: Running, interfaces: RobotInterfaces | None) -> None:
         self._loop, self._interfaces = loop, interfaces
+        self.names: Callable[[], Mapping[str, str]] = dict  # of inputs and outputs
         self._tick = 0
         with gui.add_folder("Inputs and outputs", expand_by_default=False):
             self.outputs = Html(gui)
             self.safety = {label: gui.add_checkbox(label, False) for label in LEVELS}
-            self.digital = [gui.add_checkbox(_label(number, loop.settings), False, hint=HINT) for number in range(COUNT)]
+            self.digital = [gui.add_checkbox(_label(number, loop.settings, {}), False, hint=HINT) for number in range(COUNT)]
         for label, control in self.safety.items():
             _by_hand(control, self._commands(label))
         for number, control in enumerate(self.digital):
@@ -50,13 +51,13 @@ class Wires:
 
     def show(self, snapshot: Snapshot) -> bool:
         """Show the levels and what uses them; True if anything changed."""
-        high, settings = self._loop.desk.high, self._loop.settings
+        high, settings, names = self._loop.desk.high, self._loop.settings, self.names()
         changed = [_bring(control, "value", number in high) for number, control in enumerate(self.digital)]
-        changed += [_bring(control, "label", _label(number, settings)) for number, control in enumerate(self.digital)]
+        changed += [_bring(control, "label", _label(number, settings, names)) for number, control in enumerate(self.digital)]
         if snapshot.tick < self._tick:  # the simulation began again, with everything closed and off
             changed += [_bring(control, "value", False) for control in self.safety.values()]
         self._tick = snapshot.tick
-        on = ", ".join(map(str, sorted(self._on(snapshot)))) or "none"
+        on = ", ".join(names.get(f"output {number}", str(number)) for number in sorted(self._on(snapshot))) or "none"
         changed.append(self.outputs.show(svg.facts([("Outputs that are on", on)])))
         return any(changed)
 
@@ -76,13 +77,13 @@ class Wires:
         return lambda: self._loop.desk.wire(number, self.digital[number].value)
 
 
-def _label(number: int, settings: Settings) -> str:
+def _label(number: int, settings: Settings, names: Mapping[str, str]) -> str:
     """The input's name, and what it does with free-drive."""
     use = settings.signals
     enters = use.digital and use.digital_input == number
     leaves = use.leaving and use.leaving_input == number
     does = ": both" if enters and leaves else ": enter" if enters else ": leave" if leaves else ""
-    return f"Input {number}{does}"
+    return f"{names.get(f'input {number}', f'Input {number}')}{does}"
 
 
 def _by_hand(control: Any, act: Callable[[], None]) -> None:

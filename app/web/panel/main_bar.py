@@ -51,6 +51,9 @@ class MainBar:
         self.start = gui.add_button("Move to start", color="gray", disabled=True, hint="Hold it: to where the program begins")
         row = (self.run, self.pause, self.stop, self.start)
         Html(gui, style.row([button._impl.uuid for button in row], SHARES, held=self.start._impl.uuid))
+        self.home = gui.add_button(
+            "Back to my cell", color="gray", visible=False, hint="The scenario ends; nothing of it is kept"
+        )
         self.line = Html(gui, svg.program_line(NO_PROGRAM))
         self.speed = gui.add_slider(
             "Speed [%]", min=0, max=100, step=5, initial_value=100, hint="Of programs and of jogging, at once"

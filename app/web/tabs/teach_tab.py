@@ -174,10 +174,11 @@ class Teach:
         async def _(_: viser.GuiEvent) -> None:
             self.read(self.load.value.name, self.load.value.content)
 
-    def begin_with(self, lesson: Lesson) -> None:
-        """Show what was taught before, with nothing to undo."""
-        self.edits.now = lesson
-        self._refresh()
+    def take(self, lesson: Lesson) -> None:
+        """Show what was taught before."""
+        if lesson != self.lesson:
+            self.edits.to(lesson)
+            self._refresh()
 
     def file(self) -> bytes:
         """What was taught, as a file."""

@@ -28,7 +28,7 @@ from pendant.walls.barrier import Place
 from pendant.walls.containment import WallState
 from pendant.walls.definitions import AnyBorder
 from sim.arm.frames import joint_frames, quaternion_from_matrix
-from sim.arm.scenario import Scenario, table
+from sim.arm.scenario import Load, Scenario, table
 from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
 from sim.run.between_ticks import BetweenTicks
@@ -133,6 +133,11 @@ class FakeLoop:
     def tools(self) -> tuple[Tool, ...]:
         """The table: the scenario's until the test gives another."""
         return self.table or tuple(table(self.scenario))
+
+    @property
+    def payload_true(self) -> Load:
+        """What the test says that is attached."""
+        return Load(mass=self.payload)
 
     @property
     def walls(self) -> tuple[AnyBorder, ...]:

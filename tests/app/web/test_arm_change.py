@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from app.files.checked import BadInput
+from app.kept_setup import Cell
 from app.log.live import LiveRecording
 from app.session.prepare import prepare
 from app.session.session_file import Setup
@@ -25,11 +26,11 @@ class Arms:
     def __init__(self, loop: FakeLoop) -> None:
         self._loop = loop
 
-    def ready(self, name: str) -> ReadyArm:
+    def ready(self, name: str, held: Cell | None = None) -> ReadyArm:
         if name == "broken":
             raise BadInput("broken.yaml", "robot", name, "an arm that works")
         prepared = prepare(Setup(robot=name), "test")
-        return ReadyArm(prepared, None, None, meshes_of(prepared.arm))
+        return ReadyArm(prepared, None, held, meshes_of(prepared.arm))
 
     def bring(self, arm: ReadyArm) -> BroughtArm:
         self._loop.scenario = arm.prepared.scenario

@@ -150,19 +150,6 @@ def test_scenarios_are_found_by_words_and_by_topic(served: Served, join: Join) -
     until(lambda: picker.cards.shown.count("data-pd-pick") == len(TOPICS["Free-drive ends"]), "those of the topic")
 
 
-def test_a_set_up_is_saved_as_a_file_and_loaded_again(loop: FakeLoop, still: Served) -> None:
-    setup = still.lab.setup
-    content = setup.file()
-    setup.read("cell.yaml", content.replace(b"seed: 0", b"seed: 5"))
-    assert "With the set-up of cell.yaml" in setup.message.shown
-    make, _ = loop.begun[-1]
-    assert make().scenario.seed == 5
-    setup.read("cell.yaml", b"robot: <b>ur3e</b>")
-    assert "File refused" in setup.message.shown
-    assert "<b>ur3e" not in setup.message.shown
-    assert len(loop.begun) == 1
-
-
 def test_what_is_taught_is_kept_for_the_next_start(loop: FakeLoop, tmp_path: Path) -> None:
     keeper = Keeper(tmp_path, "ur5e")
     served = serve(loop, ARM, Scenario(), keeper=keeper)
@@ -172,7 +159,7 @@ def test_what_is_taught_is_kept_for_the_next_start(loop: FakeLoop, tmp_path: Pat
     kept = keeper.read()
     assert kept is not None
     assert [waypoint.name for waypoint in kept.taught.waypoints] == ["P1"]
-    again = serve(loop, ARM, Scenario(), lesson=kept.taught)
+    again = serve(loop, ARM, Scenario(), cell=kept)
     assert [step.text for step in again.docks.teach.lesson.plan] == ["Move to P1"]
     assert again.docks.teach.choice.options == ("P1",)
     again.close()
