@@ -28,7 +28,6 @@ MODULES = (
     "sim/estimation/payload_fall.py",
     "sim/estimation/sudden_change.py",
     "sim/flange/external_wrench.py",
-    "sim/flange/fall_answer.py",
     "sim/flange/step_answer.py",
     "sim/flange/wrench_hand.py",
     "sim/flange/wrench_hypotheses.py",

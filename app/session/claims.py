@@ -102,7 +102,6 @@ _EMBODIMENTS = {
     "FD-13 touch": "a hand that touches a link of a standing arm, and does not move it, keeps it free",
     "FD-12b vertical": "speed along gravity limited more than across it",
     "FD-19 falls": "a payload that falls off ends free-drive at once",
-    "FD-19 light": "a light payload's fall that a hand hides in letting go is known by what follows",
     "FD-19 joints": "without a force sensor the joints tell that a payload fell",
     "FD-19 led": "without a force sensor the joints tell a hand that leads from an arm that goes on alone",
     "VW-6 inside": "free-drive is kept only while the part is inside the shape, as shipped",

@@ -84,7 +84,6 @@ class ExternalWrench:
             count="i8",
             lost=(),  # log of the odds that the payload changed, against all else [nats]; minus infinity: nothing is compared
             share=(),  # of the payload that is gone then
-            lost_age="i8",  # ticks since that change
             stepped=(),  # log of the odds that the sensor stepped, against all else [nats]; the same
             step=(),  # size of the step [N]
             jump=(6,),  # the same as a wrench, axes of B
@@ -162,21 +161,14 @@ def compare(wrenches, known, bias, accelerations) -> None:
 
 
 @kernel
-def in_base(own, place, bias, out) -> None:
-    """Writes x without the bias and p of a tick, by its place in the rings, axes of B."""
-    x, p = out
-    for k in range(6):
-        x[k] = own.x[place, k] - bias[k]
-    turn_both(own.R[place], x, x)
-    turn_both(own.R[place], own.p[place], p)
-
-
-@kernel
 def _add(own, seen, length, bias) -> None:
     """One tick more has been seen since the change, the earliest of `length`."""
     place = (own.next - length) % KEPT
     turned_x, turned_p = own.sums[10], own.sums[11]
-    in_base(own, place, bias, (turned_x, turned_p))
+    for k in range(6):
+        turned_x[k] = own.x[place, k] - bias[k]
+    turn_both(own.R[place], turned_x, turned_x)
+    turn_both(own.R[place], own.p[place], turned_p)
     for k in range(6):
         x, p = turned_x[k], turned_p[k]
         seen.x[k] += x
@@ -239,6 +231,6 @@ def _weigh(own, here, bias) -> None:
                 likelihood += known - LN_RARE if kind == MORE else known
                 lost, other = both(lost, likelihood), both(other, likelihood - carried)
                 if likelihood > gone:
-                    gone, own.share, own.lost_age = likelihood, share, length
+                    gone, own.share = likelihood, share
     own.lost = lost - both(other, stepped)
     own.stepped = stepped - both(other, lost)

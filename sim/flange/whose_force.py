@@ -6,7 +6,6 @@ from typing import NamedTuple
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.flange.external_wrench import ExternalWrench, compare
-from sim.flange.fall_answer import FallAnswer, follow
 from sim.flange.flange_forces import FlangeForces
 from sim.flange.step_answer import StepAnswer, answer
 
@@ -24,7 +23,7 @@ NOTHING = Odds(-math.inf, 0.0, -math.inf, 0.0)
 
 
 class WhoseForce:
-    """All that is asked of the flange sensor in free-drive. One kernel: to call three takes as long as all that they do.
+    """All that is asked of the flange sensor in free-drive. One kernel: to call two takes as long as all that they do.
 
     Args:
         arm: the noise of its flange sensor, accelerometer and gyro.
@@ -32,8 +31,8 @@ class WhoseForce:
     """
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
-        self.bank, self._step, self._fall = ExternalWrench(arm, forces), StepAnswer(arm.n, arm.accuracy.stiffness), FallAnswer()
-        self._records = self.bank.record, self._step.record, self._fall.record
+        self.bank, self._step = ExternalWrench(arm, forces), StepAnswer(arm.n, arm.accuracy.stiffness)
+        self._records = self.bank.record, self._step.record
         self._known = forces.record, forces.model
         self._begun = False
 
@@ -48,7 +47,7 @@ class WhoseForce:
         if bias is None:
             if self._begun:
                 self._begun = False
-                for each in (self.bank, self._step, self._fall):
+                for each in (self.bank, self._step):
                     each.forget()
             return NOTHING
         self._begun = True
@@ -57,8 +56,7 @@ class WhoseForce:
 
 @kernel
 def _update(records, known, bias, accelerations) -> tuple[float, float, float, float]:
-    bank, step, fall = records
+    bank, step = records
     compare(bank, known, bias, accelerations)
     answer(step, known, bank)
-    follow(fall, bank, bias[0])
-    return fall[0].odds, fall[0].share, step[0].odds, step[0].size
+    return bank[0].lost, bank[0].share, step[0].odds, step[0].size

@@ -38,7 +38,6 @@ TOPICS = {
         "too-fast",
         "sensor-fails",
         "payload-falls",
-        "payload-falls-light",
         "payload-falls-unseen",
         "guided-unseen",
         "way-back",
