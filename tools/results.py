@@ -359,11 +359,11 @@ def take_over(folder: Path, digest: str | None, out: Path, built: Path) -> None:
     documents = read(folder)
     if not documents:
         raise Unreadable(f"{folder}: no bench has written a result there")
-    digest = digest or documents[-1]["digest"]
+    shown_code = digest or str(documents[-1]["digest"])
     remember(misses(documents), out / "history.csv")
-    write_summary(summary(documents, digest), out / "bars.json")
-    write_values(documents, digest, built / "results.csv")
-    if curves := points([document for document in documents if document["digest"] == digest]):
+    write_summary(summary(documents, shown_code), out / "bars.json")
+    write_values(documents, shown_code, built / "results.csv")
+    if curves := points([document for document in documents if document["digest"] == shown_code]):
         draw(curves, out / NAME)
 
 
