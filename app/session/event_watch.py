@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from app.session.expectation_watch import Watch, at, margin_within
 from app.session.expectations import ContactDelay, Countdown, Happens, Heard, Never, NumberRange, Period
@@ -110,24 +111,50 @@ class ToneWatch(Watch):
         return count == times if self.wanted.exactly else count >= times, listed(self.found)
 
 
+class PeriodRun(NamedTuple):
+    """A run of a period that has ended."""
+
+    first: int  # tick
+    length: int  # ticks
+
+
+@dataclass(slots=True)
+class PeriodRuns:
+    """The runs of a period: a run is the ticks in which the period is present without its remainder rising.
+
+    Args:
+        name: of the period.
+
+    Attributes:
+        ended: the runs that have ended, the first one first.
+    """
+
+    name: str
+    ended: list[PeriodRun] = field(default_factory=list)
+    _began: int | None = None
+    _before: int = 0  # the remainder a tick before [ticks]
+
+    def see(self, tick: int, decision: Decision) -> None:
+        """Take in one tick."""
+        left = next((period.ticks for period in decision.periods if period.name == self.name), None)
+        if self._began is not None and (left is None or left > self._before):
+            self.ended.append(PeriodRun(self._began, tick - self._began))
+            self._began = None
+        if left is not None:
+            self._began = tick if self._began is None else self._began
+            self._before = left
+
+
 @dataclass(slots=True)
 class PeriodWatch(Watch):
-    """Follows `Period`: a run is the ticks in which the period is present without its remainder rising."""
+    """Follows `Period`."""
 
     wanted: Period = field(kw_only=True)
-    runs: list[tuple[int, int]] = field(default_factory=list)  # first tick, length in ticks, of each run that has ended
-    began: int | None = None
-    before: int = 0  # the remainder a tick before
+    runs: PeriodRuns = field(kw_only=True)
 
     def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
-        left = next((period.ticks for period in decision.periods if period.name == self.wanted.name), None)
-        if self.began is not None and (left is None or left > self.before):
-            self.runs.append((self.began, tick - self.began))
-            self.began = None
-        if left is not None:
-            self.began = tick if self.began is None else self.began
-            self.before = left
+        self.runs.see(tick, decision)
 
     def expected(self) -> str:
         """See `Watch.expected`."""
@@ -136,9 +163,9 @@ class PeriodWatch(Watch):
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""
-        if len(self.runs) < self.wanted.run:
-            return False, f"{len(self.runs)} ended runs"
-        first, length = self.runs[self.wanted.run - 1]
+        if len(self.runs.ended) < self.wanted.run:
+            return False, f"{len(self.runs.ended)} ended runs"
+        first, length = self.runs.ended[self.wanted.run - 1]
         # Half a tick of grace, since lengths are whole ticks.
         passed = abs(length * TICK - self.wanted.length) <= self.wanted.tolerance + 0.5 * TICK
         return passed, f"{length * TICK:.3f} s, from {at(first)}"
@@ -234,7 +261,7 @@ def watch_told(
 ) -> Watch:
     """The watch that follows an expectation of what is told; see `measures.watch`."""
     if isinstance(expectation, Period):
-        return PeriodWatch(joints, trigger, wanted=expectation)
+        return PeriodWatch(joints, trigger, wanted=expectation, runs=PeriodRuns(expectation.name))
     begin, end = ticks(expectation.begin), None if expectation.end is None else ticks(expectation.end)
     match expectation:
         case Heard():

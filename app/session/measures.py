@@ -1,7 +1,7 @@
 """Follows numbers that a session wants within bounds: quantities and displacements. `watch` picks the watch of an expectation."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from app.session.event_watch import watch_told
@@ -239,6 +239,14 @@ class ReachWatch(ValueWatch):
         return False, f"{self.low[0]:.6g} to {self.high[0]:.6g} {self.unit()}"
 
 
+def displacement(place: Triple, begin: Triple, along: Sequence[float] | None) -> float:
+    """The distance from `begin` to `place`; with a direction, its part along that, with its sign [m]. All in one frame."""
+    (x, y, z), (i, j, k) = place, begin
+    if along is None:
+        return math.hypot(x - i, y - j, z - k)
+    return ((x - i) * along[0] + (y - j) * along[1] + (z - k) * along[2]) / math.hypot(*along)
+
+
 @dataclass(slots=True)
 class DisplacementWatch(BoundsWatch):
     """Follows `Displacement`."""
@@ -251,11 +259,7 @@ class DisplacementWatch(BoundsWatch):
         now = point_of(glance(), self.joints, self.wanted.part)
         if self.place is None:
             self.place = now
-        (x, y, z), (i, j, k), along = now, self.place, self.wanted.along
-        if along is None:
-            distance = math.hypot(x - i, y - j, z - k)
-        else:
-            distance = ((x - i) * along[0] + (y - j) * along[1] + (z - k) * along[2]) / math.hypot(*along)
+        distance = displacement(now, self.place, self.wanted.along)
         if self.wanted.measure == "final":
             self.low = self.high = (distance, tick)
         else:

@@ -6,8 +6,9 @@ from collections.abc import Callable
 import mujoco
 import numpy as np
 
+from app.session.event_watch import PeriodRuns
 from app.session.expectations import Value
-from app.session.measures import ValueWatch
+from app.session.measures import ValueWatch, displacement
 from app.session.triggers import Trigger
 from app.studies.study_measures import (
     AnyMeasure,
@@ -29,6 +30,7 @@ from pendant.decision import Decision
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.exchange.scoring import point_of
+from sim.plant.touch import Triple
 from sim.simulation import Simulation
 
 Number = float | bool | None
@@ -153,15 +155,14 @@ class WayTaker(Taker):
     def __init__(self, measure: WayMeasure, simulation: Simulation) -> None:
         super().__init__(measure)
         self._measure, self._glance, self._joints = measure, simulation.glance, list(simulation.arm.chain.joints)
-        self._place: np.ndarray | None = None
+        self._begun_at: Triple | None = None
         self._total = Total(measure.statistic)
 
     def look(self, tick: int, decision: Decision, start: int) -> None:
         """See `Taker.look`."""
-        now = np.array(point_of(self._glance(), self._joints, self._measure.part))
-        self._place = now if self._place is None else self._place
-        way, along = now - self._place, self._measure.along
-        self._total.add(math.hypot(*way) if along is None else float(way @ along) / math.hypot(*along))
+        now = point_of(self._glance(), self._joints, self._measure.part)
+        self._begun_at = now if self._begun_at is None else self._begun_at
+        self._total.add(displacement(now, self._begun_at, self._measure.along))
 
     def value(self) -> Number:
         """See `Taker.value`."""
@@ -169,28 +170,20 @@ class WayTaker(Taker):
 
 
 class PeriodTaker(Taker):
-    """Takes the length of a period: ticks in which it is present without its remainder rising."""
+    """Takes the length of a period."""
 
     def __init__(self, measure: PeriodLength) -> None:
         super().__init__(measure)
-        self._measure = measure
-        self._runs: list[int] = []
-        self._began: int | None = None
-        self._before = 0
+        self._wanted, self._runs = measure.run, PeriodRuns(measure.period)
 
     def look(self, tick: int, decision: Decision, start: int) -> None:
         """See `Taker.look`."""
-        left = next((period.ticks for period in decision.periods if period.name == self._measure.period), None)
-        if self._began is not None and (left is None or left > self._before):
-            self._runs.append(tick - self._began)
-            self._began = None
-        if left is not None:
-            self._began = tick if self._began is None else self._began
-            self._before = left
+        self._runs.see(tick, decision)
 
     def value(self) -> Number:
         """See `Taker.value`."""
-        return self._runs[self._measure.run - 1] * TICK if len(self._runs) >= self._measure.run else None
+        ended = self._runs.ended
+        return ended[self._wanted - 1].length * TICK if len(ended) >= self._wanted else None
 
 
 class ContactTaker(Taker):
