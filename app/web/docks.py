@@ -162,6 +162,8 @@ class Docks:
             self.tools.touching.take,
             self.tools.touching.again,
             self.tools.touching.use,
+            self.tools.editor.yes,
+            self.tools.editor.no,
             self.tools.editor.save,
             self.tools.editor.load,
             self.walls.here,

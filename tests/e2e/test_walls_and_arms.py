@@ -167,14 +167,16 @@ def test_move_the_tool_frame_and_undo_it(visit: Visit, cell: Cell, width: int, h
     page = visit(width, height)
     tab = cell.served.docks.tools
     open_tab(page, "Tools")
-    tap(page.get_by_role("checkbox", name="Show the frame"))
+    tap(page.get_by_role("checkbox", name="Edit in 3D"))
     cell.wait(lambda: not tab.frame.handles.away, "handles")
     for _ in range(6):
         at = cell.loop.latest().truth_links[-1]
         tip = at[:3] + matrix_from_quaternion(at[3:]) @ np.array([0.0, 0.0, 0.75 * FRAME_SCALE])
         pull(page, cell.pixel(page, 0, tip), 30.0)
         page.wait_for_timeout(700)
-        if any(cell.loop.tools[0].tcp):
+        if tab.editor.asking:
+            click(page, "Yes, change the tool in use")
+            cell.wait(lambda: any(cell.loop.tools[0].tcp), "it is another")
             break
     x, y, z = cell.loop.tools[0].tcp
     assert z > 0.01

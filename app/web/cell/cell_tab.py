@@ -12,7 +12,8 @@ from app.web.widgets.svg import Colour
 from app.web.widgets.typed import Typed
 from pendant.program.steps import LINES
 
-OWN = "Arm, tools, payload, walls, world, settings, program and script are one cell. It is kept for the next start."
+OWN = "Arm, tools, payload, walls, world, settings, program and script are one cell."
+KEPT = " It is kept for the next start."
 BESIDE = "A scenario runs beside your cell. Nothing of it is kept, unless you keep it."
 NAMED = tuple(f"{kind} {number}" for kind in ("input", "output") for number in range(LINES))
 
@@ -91,7 +92,7 @@ class CellTab:
         cell = self._cell
         assert cell is not None
         beside = cell.lent is not None
-        text, colour = (BESIDE, Colour.AMBER) if beside else (OWN, Colour.GREY)
+        text, colour = (BESIDE, Colour.AMBER) if beside else (OWN + (KEPT if cell.keeps else ""), Colour.GREY)
         note = svg.note("Scenario" if beside else "My cell", text, colour)
         kept = svg.note("Not kept for the next start", cell.problem, Colour.AMBER) if cell.problem else ""
         return any(

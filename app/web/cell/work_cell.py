@@ -78,6 +78,11 @@ class WorkCell:
         return "" if self._keeper is None else self._keeper.problem
 
     @property
+    def keeps(self) -> bool:
+        """It is kept for the next start."""
+        return self._keeper is not None and not self._keeper.problem
+
+    @property
     def undoes(self) -> bool:
         """There is something to undo."""
         return bool(self._before) and self.lent is None

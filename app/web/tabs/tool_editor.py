@@ -15,7 +15,7 @@ from app.runs.runner import try_tool
 from app.web.running import Running
 from app.web.tabs.tool_frame import ToolPlace
 from app.web.widgets import svg
-from app.web.widgets.html import Html, enable
+from app.web.widgets.html import Html, enable, reveal
 from app.web.widgets.svg import Colour
 from app.web.widgets.vector_field import vector
 from pendant.equipment.tools import MOST, Tool, tool_problem
@@ -69,7 +69,12 @@ class ToolEditor:
         self._tool: Tool = BARE  # that the form was filled with
         self._before: list[tuple[Tool, ...]] = []  # the table before each edit
         self.wanted = ""  # name of the tool that was asked for last
-        self.undo = gui.add_button("Undo", color="gray", disabled=True, hint="Of the table, also of what the handles moved")
+        self._used = ""  # name of the tool in use
+        self._pending: tuple[Tool, ...] | None = None  # a table in which the tool in use is another, until somebody is sure
+        self.question = Html(gui)
+        self.yes = gui.add_button("Yes, change the tool in use", color="gray", visible=False)
+        self.no = gui.add_button("No, leave it", color="gray", visible=False)
+        self.undo = gui.add_button("Undo", color="gray", disabled=True, hint="Of the table, also of what was edited in 3D")
         with gui.add_folder("Edit the table", expand_by_default=False):
             self.name = gui.add_text("Name", BARE.name)
             self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=OVERLOAD * arm.payload, step=0.001)
@@ -90,8 +95,16 @@ class ToolEditor:
         self._reveal()
         self._connect()
 
-    def show(self, chosen: Tool | None, locked: bool) -> bool:
-        """Fill the form with the tool chosen, once; True if anything changed."""
+    @property
+    def asking(self) -> bool:
+        """Somebody is asked whether the tool in use is to change."""
+        return self._pending is not None
+
+    def show(self, chosen: Tool | None, locked: bool, used: str = "") -> bool:
+        """Fill the form with the tool chosen, once; `used` names the one in use. True if anything changed."""
+        self._used = used
+        if locked:
+            self._answer(None)
         filled = chosen is not None and chosen != self._tool
         if chosen is not None and filled:
             self._fill(chosen)
@@ -194,6 +207,28 @@ class ToolEditor:
         )
 
     def _ask(self, table: tuple[Tool, ...]) -> None:
+        """Ask the robot for this table; where it changes the tool in use, ask the user first."""
+        now = next((tool for tool in self._loop.tools if tool.name == self._used), None)
+        if now is not None and now not in table:
+            self._answer(table)
+        else:
+            self._take(table)
+
+    def _answer(self, pending: tuple[Tool, ...] | None) -> None:
+        """Have a question about this table, or none."""
+        self._pending = pending
+        text = f"{self._used} is in use. The arm moves and weighs by it. Change it?"
+        self.question.show("" if pending is None else svg.note("The tool in use", text, Colour.AMBER))
+        for button in (self.yes, self.no):
+            reveal(button, pending is not None)
+
+    def _sure(self) -> None:
+        pending = self._pending
+        self._answer(None)
+        if pending is not None:
+            self._take(pending)
+
+    def _take(self, table: tuple[Tool, ...]) -> None:
         if table != self._loop.tools:
             self._before = [*self._before, self._loop.tools][-REMEMBERED:]
             self._loop.desk.tabulate(table)
@@ -214,6 +249,8 @@ class ToolEditor:
 
         on(self.change, self._change)
         on(self.undo, self._undo)
+        on(self.yes, self._sure)
+        on(self.no, lambda: self._answer(None))
 
         @self.known.on_update
         async def _(_: viser.GuiEvent) -> None:

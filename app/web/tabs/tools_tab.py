@@ -65,8 +65,9 @@ class ToolsTab:
             self.tool: viser.GuiDropdownHandle[str] = gui.add_dropdown("Tool", names)
             self.about = Html(gui)
             self.use = gui.add_button("Use this tool", color="gray")
-            self.framed = gui.add_checkbox(
-                "Show the frame", False, hint="The tool centre point in the picture, with arrows and arcs that move and turn it"
+            self.framed = gui.add_checkbox("Show the frame", False, hint="The axes of the tool centre point in the picture")
+            self.handled = gui.add_checkbox(
+                "Edit in 3D", False, hint="Arrows and arcs in the picture move and turn the tool centre point"
             )
             self.editor = ToolEditor(gui, loop, arm)
             self.touching = TouchingPoses(gui, loop.latest, self._place)
@@ -89,9 +90,9 @@ class ToolsTab:
             self.now.show(svg.facts(_facts(decision.fitting, locked))),
             self.about.show(self._about()),
             self.progress.show(_told(wizard, measuring)),
-            self.editor.show(self._chosen(), locked),
+            self.editor.show(self._chosen(), locked, "" if decision.fitting is None else decision.fitting.tool.name),
             self.touching.show(locked),
-            self.frame.show(self._chosen() if self.framed.value else None, snapshot, fixed=locked or turning),
+            self._show_frame(snapshot, locked or turning),
             enable(self.use, not locked and not turning),
             enable(self.enter, not locked and not turning),
             enable(self.run, idle and not locked),
@@ -103,6 +104,12 @@ class ToolsTab:
             self.zeroed.show(_subtracted(decision)),
         ]
         return any(changed)
+
+    def _show_frame(self, snapshot: Snapshot, locked: bool) -> bool:
+        """The axes of the chosen tool, with handles while it is edited in 3D and nobody is asked about it."""
+        edits = self.handled.value
+        fixed = locked or not edits or self.editor.asking
+        return self.frame.show(self._chosen() if self.framed.value or edits else None, snapshot, fixed=fixed)
 
     def _tabulate(self, tools: tuple[Tool, ...]) -> None:
         """Another table: offer it; what was just added or renamed is chosen, else what was."""

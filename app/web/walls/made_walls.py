@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from app.web.widgets import svg
 from app.web.widgets.svg import Colour
-from pendant.tick.pose import Pose, Quaternion, Rotation, Vector, quaternion, rotation, turned
+from pendant.tick.pose import HERE, ORIGIN, Pose, Quaternion, Rotation, Vector, quaternion, rotation, turned
 from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder, Area
 from pendant.walls.settings import Reaction
 from pendant.walls.shapes import AnyShape, Box, Cylinder, HalfSpace, Sphere
+from sim.arm.frames import matrix_from_quaternion
 from sim.exchange.snapshot import Snapshot
 
 Array = NDArray[np.float64]
@@ -31,6 +32,9 @@ SHAPES: dict[str, AnyShape] = {
 """What can be made, as it is at first: an arm can be guided for 100 or 200 mm until it is stopped."""
 
 SIDES = {"Stay inside": False, "Keep out": True}
+FIXED = {"Base": "base", "Tool": "tcp", "Flange": "flange"}
+"""What a wall can be fixed to, beside the objects of the world."""
+
 REACTIONS = {"End free-drive": Reaction.LEAVE, "Stop there": Reaction.STAY, "Protective stop": Reaction.STOP}
 REDUCES = "Reduced mode beyond it"
 """What an area can do instead (RL-7)."""
@@ -105,6 +109,37 @@ def moved(area: Area, place: Place | None, p: Vector, turn: Quaternion) -> Area:
     return replace(area, position=(lx, ly, lz), orientation=quaternion((a, b, c, d, e, f, g, h, i)))
 
 
+def fixed(area: Area, place: Place | None, to: str, frame: Pose) -> Area:
+    """The area, where it lies now, fixed to something else, with which it moves from now on.
+
+    Args:
+        area: as it is.
+        place: where its shape lies now; None: its reference is B.
+        to: name of the reference.
+        frame: X_BR of that reference.
+    """
+    p, R = (area.position, _matrix(rotation(area.orientation))) if place is None else (place.pose.p, _matrix(place.pose.R))
+    R_BR = _matrix(frame.R)
+    x, y, z = (R_BR.T @ (np.array(p) - np.array(frame.p))).tolist()
+    a, b, c, d, e, f, g, h, i = (R_BR.T @ R).ravel().tolist()
+    return replace(area, reference=to, position=(x, y, z), orientation=quaternion((a, b, c, d, e, f, g, h, i)))
+
+
+def frame_of(reference: str, snapshot: Snapshot, objects: Sequence[str]) -> Pose:
+    """X_BR of what a wall can be fixed to, now: base, flange, tool, or one of the `objects`, which are in the scenario's order."""
+    if reference == "tcp":
+        return tool_now(snapshot)
+    if reference == "base":
+        return HERE
+    seen = snapshot.estimate
+    if reference == "flange":
+        return tool_pose(seen.p_BF, seen.R_BF, ORIGIN, np.eye(3))
+    base, there = snapshot.truth_links[0], snapshot.truth_objects[objects.index(reference)]
+    R_WB = matrix_from_quaternion(base[3:])
+    p, R = R_WB.T @ (there[:3] - base[:3]), R_WB.T @ matrix_from_quaternion(there[3:])
+    return tool_pose(p, R, ORIGIN, np.eye(3))
+
+
 def sizes(shape: AnyShape) -> tuple[float, ...]:
     """The sizes of a shape [mm], in the order of `SIZES`; none of one that keeps its own."""
     match shape:
@@ -159,7 +194,8 @@ def about(border: AnyBorder) -> str:
     side = word(SIDES, border.keep_out).lower() if isinstance(border, Area) else "round it"
     if reaction(border) == REDUCES:
         side = REDUCES.lower()
-    return f"{word(PARTS, border.part)}: {side}"
+    moves = "" if border.reference == "base" else f", with {word(FIXED, border.reference).lower()}"
+    return f"{word(PARTS, border.part)}: {side}{moves}"
 
 
 def reaction(border: AnyBorder) -> str:

@@ -10,6 +10,7 @@ from app.web.access.guard import Guard
 from app.web.running import Running
 from app.web.walls.made_walls import (
     FARTHEST,
+    FIXED,
     LONGEST,
     PARTS,
     REACTIONS,
@@ -19,6 +20,8 @@ from app.web.walls.made_walls import (
     SIDES,
     SIZES,
     at_tool,
+    fixed,
+    frame_of,
     listed,
     made,
     moved,
@@ -70,20 +73,25 @@ class WallsTab:
         self.on = gui.add_checkbox("On", True)
         self.side = gui.add_dropdown("Limit", tuple(SIDES))
         self.part = gui.add_dropdown("Watched", tuple(PARTS), hint="The point of the arm that the limit is for")
+        self.fixed: viser.GuiDropdownHandle[str] = gui.add_dropdown(
+            "Fixed to", tuple(FIXED), hint="It moves with this, from where it lies now"
+        )
         self.reaction = gui.add_dropdown("When reached", (*REACTIONS, REDUCES))
         self.size = [gui.add_number("Radius [mm]", SHORTEST, min=SHORTEST, max=LONGEST, step=1.0) for _ in range(3)]
         self.spot = [
             gui.add_number(f"{axis} [mm]", 0.0, min=-FARTHEST, max=FARTHEST, step=1.0, hint="Of its centre, in the base")
             for axis in "XYZ"
         ]
-        self.shown = gui.add_checkbox("Handles", False, hint="Arrows and arcs in the picture, with which it is moved and turned")
+        self.shown = gui.add_checkbox(
+            "Edit in 3D", False, hint="Arrows and arcs in the picture, with which it is moved and turned"
+        )
         self.here = gui.add_button("Bring it to the tool", color="gray")
         self.delete = gui.add_button("Delete", color="gray")
         self.undo = gui.add_button("Undo", color="gray")
         self.points = ThreePoints(server, self._tool, self._through)
         self.handles = WallHandles(server, guard, self._moved)
         self._refresh()  # nothing is chosen yet
-        own = (self.name, self.on, self.side, self.part, self.reaction, *self.size, *self.spot)
+        own = (self.name, self.on, self.side, self.part, self.fixed, self.reaction, *self.size, *self.spot)
         for control in (*own, self.here, self.delete, self.undo):
             enable(control, False)
         self._connect()
@@ -116,7 +124,7 @@ class WallsTab:
         changed |= self.list.show(listed(borders, self._loop.settings.walls.on))
         for control in (self.name, self.on, self.reaction, self.part, self.delete):
             changed |= enable(control, chosen is not None and not locked)
-        for control in (self.side, self.here, *self.size, *self.spot):
+        for control in (self.side, self.fixed, self.here, *self.size, *self.spot):
             changed |= enable(control, area is not None and not locked)
         changed |= enable(self.undo, bool(self._before) and not locked)
         changed |= self.points.show(locked)
@@ -166,7 +174,7 @@ class WallsTab:
                 if control.label != (text := f"{names[place]} [mm]"):
                     control.label = text
                 _bring(control, round(values[place], 1))
-        for control in (self.side, self.here, self.shown, *self.spot):
+        for control in (self.side, self.fixed, self.here, self.shown, *self.spot):
             reveal(control, area is not None)
         for control in (self.name, self.on, self.part, self.reaction, self.delete):
             reveal(control, border is not None)
@@ -178,6 +186,10 @@ class WallsTab:
         _bring(self.reaction, reaction(border))
         if area is not None:
             _bring(self.side, word(SIDES, area.keep_out))
+            offered = tuple(dict.fromkeys((*FIXED, *self._objects(), word(FIXED, area.reference))))
+            if self.fixed.options != offered:
+                self.fixed.options = offered
+            _bring(self.fixed, word(FIXED, area.reference))
             for control, value in zip(self.spot, self._spot(area), strict=True):
                 _bring(control, round(1000.0 * value, 1))
 
@@ -259,10 +271,26 @@ class WallsTab:
         by_hand(self.part, lambda border: replace(border, part=PARTS[self.part.value]))
         by_hand(self.reaction, lambda border: reacting(border, self.reaction.value))
         by_hand(self.side, self._sided)
+        by_hand(self.fixed, self._fix)
         for control in self.size:
             by_hand(control, self._sized)
         for control in self.spot:
             by_hand(control, self._placed)
+
+    def _objects(self) -> tuple[str, ...]:
+        """Names of the objects of the world."""
+        return tuple(thing.name for thing in self._loop.scenario.world)
+
+    def _fix(self, border: AnyBorder) -> AnyBorder:
+        to = FIXED.get(self.fixed.value, self.fixed.value)
+        if not isinstance(border, Area) or to == border.reference:
+            return border
+        if to == border.part:
+            text = f"It watches the {self.fixed.value.lower()}: it cannot move with that as well."
+            self.message.show(svg.note("Not changed", text, Colour.AMBER))
+            self._refresh()
+            return border
+        return fixed(border, self._place, to, frame_of(to, self._loop.latest(), self._objects()))
 
     def _sided(self, border: AnyBorder) -> AnyBorder:
         return replace(border, keep_out=SIDES[self.side.value]) if isinstance(border, Area) else border

@@ -79,6 +79,8 @@ def test_a_tool_is_changed_as_one(join: Join, loop: FakeLoop, editor: ToolEditor
     enter(client, editor.moments, (12.0, 12.0, 9.0))
     enter(client, editor.products, (0.0, 0.5, 0.0))
     client.set(editor.change._impl.uuid, value="Set")
+    until(lambda: editor.yes.visible, "it asks: the tool is in use")
+    client.set(editor.yes._impl.uuid, value=True)
     inertia = [1.2e-3, 1.2e-3, 9e-4, 0.0, 5e-5, 0.0]
     changed, *rest = wish(loop)
     assert rest == [SPHERE, TURNED]
@@ -123,6 +125,8 @@ def test_the_table_is_saved_as_a_file_that_serve_takes_and_loaded_again(join: Jo
     loop.table = (SPHERE, GRIPPER)
     client = join()
     upload(client, editor.load._impl.uuid, longer)
+    until(lambda: editor.yes.visible, "it asks: the tool in use would be another")
+    client.set(editor.yes._impl.uuid, value=True)
     mine = msgspec.structs.replace(GRIPPER, tcp=[0.0, 0.0, 0.2], length=0.2)
     assert wish(loop) == (SPHERE, mine, TURNED), "the file's win; the rest stays"
     until(lambda: "3 tools" in editor.message.shown, "said")

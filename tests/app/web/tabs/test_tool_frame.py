@@ -25,10 +25,20 @@ def test_the_frame_is_shown_moved_and_brought_back(served: Served, loop: FakeLoo
     until(lambda: tab.tool.value == "gripper", "chosen")
     assert tab.frame.handles.away
     client.set(tab.framed._impl.uuid, value=True)
+    until(lambda: tab.frame._flange.visible and tab.frame.handles.away, "axes alone")
+    client.set(tab.handled._impl.uuid, value=True)
     until(lambda: not tab.frame.handles.away, "handles")
     turn = quaternion_from_matrix(rotation_from_rpy((0.0, 0.5, 0.0))).tolist()
     tab.frame.handles._moved((0.0, 0.02, 0.25), (turn[0], turn[1], turn[2], turn[3]))
     moved = replace(GRIPPER, tcp=[0.0, 0.02, 0.25], rpy=[0.0, 0.5, 0.0])
+    until(lambda: not tab.editor.no.disabled and tab.editor.no.visible, "it asks: the tool is in use")
+    assert not loop.desk.take().inputs.tools
+    client.set(tab.editor.no._impl.uuid, value=True)
+    until(lambda: not tab.editor.asking and not tab.frame.handles.away, "left as it is")
+    tab.frame.handles._moved((0.0, 0.02, 0.25), (turn[0], turn[1], turn[2], turn[3]))
+    until(lambda: tab.editor.yes.visible, "it asks again")
+    client.set(tab.editor.yes._impl.uuid, value=True)
+    until(lambda: not tab.editor.asking, "sure")
     assert wish(loop)[0] == moved
     until(lambda: not tab.editor.undo.disabled, "it can be undone")
     loop.scenario = Scenario(tool=moved)

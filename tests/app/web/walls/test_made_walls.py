@@ -1,16 +1,33 @@
 """Areas as the page makes and moves them."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from app.web.walls.made_walls import AHEAD, FARTHEST, SHAPES, SIZES, about, at_tool, inwards, made, moved, sized, sizes, tool_pose
+from app.web.walls.made_walls import (
+    AHEAD,
+    FARTHEST,
+    SHAPES,
+    SIZES,
+    about,
+    at_tool,
+    fixed,
+    frame_of,
+    inwards,
+    made,
+    moved,
+    sized,
+    sizes,
+    tool_pose,
+)
 from pendant.tick.pose import Pose, from_rpy, quaternion, rotation, seen_from, turned
 from pendant.walls.barrier import Place, placed
 from pendant.walls.definitions import Area, Wall
 from pendant.walls.shapes import Cone, HalfSpace, Sphere
+from tests.app.web.fake_loop import FakeLoop
 
 TOOL = Pose((0.4, -0.2, 0.3), from_rpy(math.pi, 0.2, 0.7))
 CART = Pose((1.0, 0.5, -0.2), from_rpy(0.1, -0.4, 2.0))
@@ -100,3 +117,32 @@ def test_the_list_says_what_each_is() -> None:
     assert about(replace(area, keep_out=True, part="elbow")) == "Elbow: keep out"
     assert about(replace(area, on=False)) == "off"
     assert about(Wall(name="w", shape=Sphere(radius=0.1))) == "Flange: round it"
+
+
+@pytest.mark.parametrize("frame", [Pose(), CART, TOOL])
+def test_fixed_to_something_else_it_stays_where_it_lies_and_moves_with_that(frame: Pose) -> None:
+    area = replace(made("Box", frozenset(), TOOL), orientation=quaternion(from_rpy(0.3, -0.2, 0.9)))
+    lies = placed(area, area.position, 1.0, Pose())
+    with_it = fixed(area, None, "cart", frame)
+    again = placed(with_it, with_it.position, 1.0, frame)
+    assert (with_it.reference, again.pose.p) == ("cart", pytest.approx(lies.pose.p))
+    assert pytest.approx(lies.pose.R) == again.pose.R
+    back = fixed(with_it, again, "base", Pose())
+    assert back.position == pytest.approx(area.position)
+    pushed = placed(with_it, with_it.position, 1.0, frame._replace(p=tuple(value + 0.1 for value in frame.p)))  # type: ignore[arg-type]
+    assert pushed.pose.p == pytest.approx([value + 0.1 for value in lies.pose.p])
+
+
+def test_a_frame_is_where_the_snapshot_says(loop: FakeLoop) -> None:
+    """The base stands turned about z by 90 degrees, one metre along x of the world; the cart a metre further along y."""
+    half = math.sqrt(0.5)
+    shown = loop.latest()
+    links = shown.truth_links.copy()
+    links[0] = [1.0, 0.0, 0.0, half, 0.0, 0.0, half]
+    snapshot = dataclasses.replace(shown, truth_links=links, truth_objects=np.array([[1.0, 1.0, 0.0, half, 0.0, 0.0, half]]))
+    cart = frame_of("cart", snapshot, ("cart",))
+    assert cart.p == pytest.approx((1.0, 0.0, 0.0))
+    assert pytest.approx(np.eye(3).ravel().tolist()) == cart.R
+    assert frame_of("base", snapshot, ()) == Pose()
+    assert frame_of("flange", snapshot, ()).p == pytest.approx(snapshot.estimate.p_BF.tolist())
+    assert frame_of("tcp", snapshot, ()).p == pytest.approx(snapshot.estimate.p_BF.tolist()), "no tool is fitted"

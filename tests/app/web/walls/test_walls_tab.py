@@ -250,3 +250,15 @@ def test_walls_that_are_switched_off_at_all_are_told(served: Served, loop: FakeL
     until(lambda: "stay inside" in tab.list.shown, "it holds")
     loop.settings = apply(loop.settings, {"walls.on": False})
     until(lambda: "All walls are off" in tab.list.shown and "stay inside" not in tab.list.shown, "it does not")
+
+
+def test_a_wall_is_fixed_to_the_flange_and_not_to_what_it_watches(served: Served, join: Join, loop: FakeLoop) -> None:
+    have(loop, BALL)
+    client, tab = join(), served.docks.walls
+    until(lambda: tab.fixed.visible and tab.fixed.value == "Base", "it lies in the base")
+    assert "with" not in tab.list.shown
+    client.set(tab.fixed._impl.uuid, value="Tool")
+    until(lambda: "cannot move with that" in tab.message.shown and tab.fixed.value == "Base", "it watches the tool")
+    client.set(tab.fixed._impl.uuid, value="Flange")
+    wished(loop, lambda walls: walls[0].reference == "flange", "fixed to the flange")
+    until(lambda: "with flange" in tab.list.shown, "listed")
