@@ -87,7 +87,7 @@ def left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Sev
     return EventRow(Effect.LEAVE, severity, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
 
 
-def stopped(headline: str, guidance: str, keys: tuple[str, ...]) -> EventRow:
+def stopped(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> EventRow:
     """Free-drive ends in STOP."""
     return EventRow(Effect.LEAVE_TO_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True)
 

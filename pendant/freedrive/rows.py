@@ -3,9 +3,6 @@
 from pendant.events.event import Kind
 from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, info, left, refused, stopped
 
-UNUSED = "To the end of this free-drive nothing amplifies the user's force; the joints alone tell who leads the arm."
-"""Reaction to a flange sensor that cannot be trusted."""
-
 BACK = "Ask again after the cool-down, and guide the part back."
 """Way out of a wall or area."""
 
@@ -37,29 +34,19 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         ("status", "value", "limit"),
     ),
     # The flange sensor (FD-3a, FD-19)
-    Kind.WRENCH_LOST: EventRow(
-        Effect.INFO,
-        Severity.WARNING,
-        "Flange force sensor not valid",
-        "The arm is heavier to move: no help from the force sensor.",
-        reaction=UNUSED,
-        way_out="End free-drive, and check the sensor.",
+    Kind.WRENCH_LOST: stopped(
+        "Stopped: flange force sensor not valid",
+        "Check the sensor, then reset. Without it free-drive goes by the joints alone.",
     ),
-    Kind.SENSOR_STEPPED: EventRow(
-        Effect.INFO,
-        Severity.WARNING,
-        "The flange force sensor stepped",
-        "A step of {force:.1f} N without joint torque: it is not used any more. End free-drive and check it.",
+    Kind.SENSOR_STEPPED: stopped(
+        "Stopped: the flange force sensor stepped",
+        "A step of {force:.1f} N without joint torque. Check the sensor and zero it, then reset.",
         ("force",),
-        reaction=UNUSED,
     ),
-    Kind.SENSOR_DRIFTED: EventRow(
-        Effect.INFO,
-        Severity.WARNING,
-        "The flange force sensor drifts",
-        "Its bias moved by {force:.1f} N, {torque:.1f} N·m: it is not used any more. End free-drive and check it.",
+    Kind.SENSOR_DRIFTED: stopped(
+        "Stopped: the flange force sensor drifts",
+        "Its bias moved by {force:.1f} N, {torque:.1f} N·m. Check the sensor and zero it, then reset.",
         ("force", "torque"),
-        reaction=UNUSED,
     ),
     # The button (FD-23)
     Kind.HOLD_SILENT: EventRow(

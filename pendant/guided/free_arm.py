@@ -110,17 +110,16 @@ class FreeArm:
         tick = estimate.tick
         if not joints_ok(estimate):
             return becomes(Transition.LEFT, Event(Kind.SENSORS_LOST, tick, {"sensor": JOINTS_SENSED}))
-        events: list[Event] = []
         if bias.used and not around.wrench_ok:
-            bias.leave()
-            events.append(Event(Kind.WRENCH_LOST, tick))
+            return becomes(Transition.LEFT, Event(Kind.WRENCH_LOST, tick))
+        events: list[Event] = []
         hand.step(estimate, bias.used, settings.unexplained.speed)
         self.user = hand.user
         if bias.used and settings.unexplained.sensor:
             still, force = around.still.count > 0, settings.unexplained.force
             told = bias.step(estimate, hand, around.mean, waits=waits, still=still, force=force)
             if told is not None:
-                events.append(told)
+                return becomes(Transition.LEFT, told)
         reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)
         before, self.caught = self.caught, reading is not None and caught(reading)
         if reading is not None and not self.caught:

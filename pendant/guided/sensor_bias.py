@@ -3,7 +3,7 @@
 Drift is slower than a hand that wants something. While nobody moves the arm, changes up to the speed of drift are subtracted,
 unless the joints measure them, too: else a hand that rests on the arm would count as drift, and would seem to push the other
 way when it lets go. What was subtracted just before the arm moves is added again, because a hand pushes a little before the
-joints show it (rollback). A sensor that steps is not used any more: how likely that is, the estimator says.
+joints show it (rollback). A sensor that steps ends free-drive: how likely that is, the estimator says.
 """
 
 import math
@@ -92,7 +92,7 @@ class SensorBias:
     ) -> Event | None:
         """One tick of free-drive with a valid sensor: its drift is subtracted.
 
-        One that steps, or has drifted far, is not used any more; that is returned.
+        Returns what ends free-drive: it steps, or has drifted far.
 
         Args:
             estimate: of this tick.
@@ -106,7 +106,6 @@ class SensorBias:
         fx, fy, fz = self._felt
         self._felt = (fx + SMOOTH * (x - fx), fy + SMOOTH * (y - fy), fz + SMOOTH * (z - fz))
         if estimate.step_odds >= KNOWN and estimate.step_force >= self._least(force, estimate.tick):
-            self.leave()
             return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": estimate.step_force})
         if not waits:
             self._drift.pause()
@@ -133,7 +132,6 @@ class SensorBias:
                 # when it lets go.
                 offset, drifts = self.sensor.offset_force, drift(self.sensor, estimate.tick - self._since)
                 if far >= offset + drifts.force or turn >= LEVER * offset + drifts.torque:
-                    self.leave()
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None
 

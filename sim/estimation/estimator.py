@@ -142,8 +142,7 @@ class Estimator:
         self.started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        # Valid and used, and so since free-drive began, if it is on.
-        sensed = sample.wrench_valid and math.isfinite(unsure) and not self.fall.blind
+        sensed = sample.wrench_valid and math.isfinite(unsure)  # valid and used
         self._observe(sample, sensed, self._estimate_torques(sample, use, learn) and learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known, valid = self._known, sample.joints_valid

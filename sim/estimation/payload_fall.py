@@ -112,12 +112,7 @@ class PayloadFall:
         own["noise"], own["stiffness"] = ripple @ ripple, arm.accuracy.stiffness
         self.torque: Array = own["hand"]
         self.certain: Array = own["certain"]
-        self._begun = self._blind = False
-
-    @property
-    def blind(self) -> bool:
-        """The flange sensor was out in this free-drive; until it ends the joints tell."""
-        return self._begun and self._blind
+        self._begun = False
 
     def update(self, q: Array, *, free: bool, sensed: bool) -> tuple[bool, JointsFeel]:
         """One tick. Returns whether the payload fell, and what explains the torques of this tick.
@@ -127,7 +122,7 @@ class PayloadFall:
         Args:
             q: joint angles (n,) as measured [rad].
             free: free-drive is on.
-            sensed: the flange sensor is valid; once it was not, the joints go on to tell.
+            sensed: the flange sensor is used.
         """
         if not free:
             self._begun = False
@@ -135,8 +130,7 @@ class PayloadFall:
             return NOT_ASKED
         if not self._begun:
             self._begin()
-        self._blind = self._blind or not sensed
-        if not self._blind:
+        if sensed:
             return NOT_ASKED
         momentum, transmission, _ = self._joints
         if not momentum.ready:
@@ -150,7 +144,7 @@ class PayloadFall:
     def _begin(self) -> None:
         """Free-drive begins."""
         own, (_, transmission, deflection) = self._own, self._joints
-        self._begun, self._blind, own["ticks"] = True, False, 0
+        self._begun, own["ticks"] = True, 0
         own["entry"] = model = transmission.ways[DYNAMICS]
         own["before"] = before = model - np.where(transmission.by_motor > 0.0, transmission.ways[MOTOR], deflection)
         weight = payload_levers(self._rigid, self._wrench.record)

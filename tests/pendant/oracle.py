@@ -600,7 +600,9 @@ def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, s
         return
     if w.wrench and not i.wrench:
         kinds.append(Kind.WRENCH_LOST)
-        w.wrench = False
+        _end(w, t, present, cool=True)
+        _stop(w, t, Safety.NORMAL, static)
+        return
 
     def begin(phase: Phase) -> None:
         w.phase, w.since, w.force0, w.tau0 = phase, t, i.force, i.tau

@@ -61,8 +61,8 @@ def script(tick: int) -> Wishes:
     changes = {
         300: (Temperature(celsius=35.0), FrictionChange(joint="elbow", factor=1.3)),
         900: (SensorFault(sensor="gyro", noise_factor=3.0),),
-        1100: (SensorFault(sensor="force_torque", outage=True),),
-        1200: (SensorFault(sensor="force_torque"),),
+        1250: (SensorFault(sensor="force_torque", outage=True),),
+        1350: (SensorFault(sensor="force_torque"),),
         2500: (DropPayload(),),
     }.get(tick, ())
     program = Program(name="trip", steps=steps) if tick == 1950 else None

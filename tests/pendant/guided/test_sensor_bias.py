@@ -16,7 +16,7 @@ from pendant.sensor.hand_model import SLOWEST, STEADY, TREMOR
 from pendant.sensor.odds import HALF, KNOWN
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, window_noise
 from pendant.tick.estimate import GRAVITY, Estimate
-from pendant.tick.modes import TICK, Phase
+from pendant.tick.modes import TICK, Mode, Phase
 from pendant.tick.pose import ORIGIN, Vector
 from pendant.tick.state import state_of
 from tests.pendant.estimates import HAND, MOVES, SENSOR, estimate
@@ -77,16 +77,15 @@ def test_only_the_last_windows_are_given_back() -> None:
 
 
 @pytest.mark.parametrize("torque", [0.0, 0.5])
-def test_a_drift_never_counts_as_guiding_and_when_it_has_gone_far_the_sensor_is_not_used_any_more(torque: float) -> None:
-    """FD-13, FD-19: by 20 N, and by more of a torque than its limit; the arm is left to its period."""
+def test_a_drift_never_counts_as_guiding_and_ends_free_drive_when_it_has_gone_far(torque: float) -> None:
+    """FD-13, FD-19: by 20 N, and by more of a torque than its limit."""
     bench = Bench(free_drive__period=10.0).in_period()
     force = 1.0 if torque else 2.0
     for tick in range(5000):
         bench.step(NOTHING, estimate(force=[0.002 * force * tick, 0.0, 0.0], torque=[0.0, 0.0, 0.002 * torque * tick]))
-        left = bench.events != []
-        assert bench.last.gain == (0.0 if left else 1.0)
-        assert not left or bench.last.baseline == (0.0,) * 6
-    assert [event.kind for event in bench.events] == [Kind.SENSOR_DRIFTED, Kind.LEFT_PERIOD]
+        assert bench.last.gain == (0.0 if bench.events else 1.0)
+    assert [event.kind for event in bench.events] == [Kind.SENSOR_DRIFTED]
+    assert bench.last.mode is Mode.STOP
     told = bench.events[0].values
     expected = {"force": 2.0, "torque": LEVER * SENSOR.offset_force} if torque else {"force": SENSOR.offset_force, "torque": 0.0}
     assert told == {name: pytest.approx(value, abs=0.21) for name, value in expected.items()}
@@ -169,9 +168,7 @@ def stepped(odds: float, force: float) -> Estimate:
 @pytest.mark.parametrize(
     ("odds", "force", "told"), [(KNOWN, HAND + 0.01, True), (KNOWN - 1e-9, 15.0, False), (KNOWN, HAND, False), (1e3, 15.0, True)]
 )
-def test_a_step_that_is_known_and_as_large_as_a_hands_force_ends_the_use_of_the_sensor(
-    odds: float, force: float, told: bool
-) -> None:
+def test_a_step_that_is_known_and_as_large_as_a_hands_force_ends_free_drive(odds: float, force: float, told: bool) -> None:
     """FD-19."""
     bench = Bench().in_period()
     bench.run(50)  # in which a sensor may have drifted by a millinewton
@@ -179,7 +176,7 @@ def test_a_step_that_is_known_and_as_large_as_a_hands_force_ends_the_use_of_the_
     steps = [event for event in bench.events if event.kind is Kind.SENSOR_STEPPED]
     assert [event.values for event in steps] == [{"force": force}] * told
     assert bench.last.gain == 0.0, "nothing helps as long as it may be one"
-    assert not told or bench.last.baseline == (0.0,) * 6
+    assert (bench.last.mode is Mode.STOP) is told
     bench.step(NOTHING, estimate())
     assert (bench.last.gain == 0.0) is told
 
