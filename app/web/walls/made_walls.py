@@ -123,7 +123,7 @@ def fixed(area: Area, place: Place | None, to: str, frame: Pose) -> Area:
 
 
 def frame_of(reference: str, snapshot: Snapshot, objects: Sequence[str]) -> Pose:
-    """X_BR of what a wall can be fixed to, now: base, flange, tool, or one of the `objects`, which are in the scenario's order."""
+    """X_BR of what a wall can be fixed to, now: base, flange, tool, or one of the `objects`, in the scenario's order."""
     if reference == "tcp":
         return tool_now(snapshot)
     if reference == "base":
