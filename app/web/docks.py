@@ -112,7 +112,7 @@ class Docks:
             self.contacts = Contacts(server, loop, arm)
         with self._lower.add_tab("Plots") as self.plots_dock:
             self.plots = Plots(gui, loop, arm)
-        self.journal.look_at = self.plots.look_at
+        self.journal.look_at = self.contacts.look_at = self.plots.look_at
         with self._lower.add_tab("Record") as self._record_dock:
             self.recording = RecordingSwitch(server, recording, arm)
         self.script: ScriptTab | None = None

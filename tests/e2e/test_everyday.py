@@ -68,7 +68,7 @@ def test_zero_the_sensor(visit: Visit, cell: Cell, width: int, height: int) -> N
 def test_stop_from_a_second_window(visit: Visit, cell: Cell, width: int, height: int) -> None:
     first, second = visit(width, height), visit(width, height)
     tap(first.get_by_role("button", name="Take"))
-    second.get_by_text("Client 1 has control").wait_for()
+    second.get_by_text("Window 1 has control").wait_for()
     tap(second.get_by_role("button", name="EMERGENCY STOP"))
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped")
     first.get_by_text("Emergency stop", exact=True).first.wait_for()

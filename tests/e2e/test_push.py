@@ -103,7 +103,7 @@ def test_the_second_client_watches_can_stop_and_takes_over(visit: Visit, cell: C
     monkeypatch.setattr(operator, "SILENCE", 120.0)  # two pages that draw in software need more than 10 s for a few presses
     first, second = visit(), visit()
     first.get_by_role("button", name="Take").click()
-    second.get_by_text("Client 1 has control").wait_for()
+    second.get_by_text("Window 1 has control").wait_for()
     first.get_by_text("You have control").wait_for()
     second.get_by_role("button", name="NORMAL").click()
     cell.wait(lambda: cell.served.guard.refused["not the operator"] == 1, "the watcher is refused")

@@ -15,10 +15,11 @@ from app.web.panel.way_back import WayBack
 from app.web.running import Running
 from app.web.scene.arm_marks import ArmMarks
 from app.web.scene.hit_mark import HitMark
+from app.web.tuning.setting_words import safety_checksum
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Bar, Colour
-from pendant.all_settings import Settings, limits_checksum
+from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command
@@ -157,7 +158,7 @@ class Panel:
         seen = snapshot.estimate
         settings = self._loop.settings
         if settings is not self._settings:
-            self._settings, self._digest = settings, limits_checksum(settings)
+            self._settings, self._digest = settings, safety_checksum(settings)
         return [
             ("Speed of the tool", _speed(seen.v_tcp)),
             ("Speed of the elbow", _speed(seen.v_elbow)),

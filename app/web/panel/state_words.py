@@ -83,7 +83,7 @@ def pull_row(pull: PullCauses | None) -> list[tuple[str, str]]:
     return [] if pull is None else [("Pulls at the arm", pull.words)]
 
 
-YOURS = "Taken as yours"
+YOURS = "Estimated hand force"
 FIGURES = {
     YOURS: (
         "The force that free-drive takes for your hand's: the green arrow. In 95 of 100 moments the true one ends within the"
@@ -102,4 +102,4 @@ def user_row(user: UncertainForce | None) -> list[tuple[str, str]]:
     if ellipsoid is None:
         return [(YOURS, f"{force}, by the joints alone")]
     least, _, most = ellipsoid[0].tolist()
-    return [(YOURS, f"{force}, ± {least:.1f} to {most:.1f} N")]
+    return [(YOURS, f"{force} (± {least:.1f} to {most:.1f} N)")]

@@ -61,7 +61,7 @@ class WayBack:
         left = ""
         if self._posture:
             left = way_back(self._posture, tuple(snapshot.estimate.q.tolist()), self._joints)
-        told = svg.note("Way back to the ghost", left.replace("_", " "), Colour.AMBER) if left else ""
+        told = svg.note("To return to where free-drive began (orange)", left.replace("_", " "), Colour.AMBER) if left else ""
         return any([self.text.show(told), self.ghost.show(self._posture or None, snapshot, "way back"), self._point(snapshot)])
 
     def _read(self, event: Event) -> None:

@@ -60,5 +60,5 @@ class ForceEllipsoid:
             x, y, z = np.maximum(numbers[6:9], THINNEST).tolist()
             self.ellipsoid.scale = (x, y, z)
             self.arrow.points = numbers[:6].reshape(1, 2, 3).astype(np.float32)
-            self.label.position, self.label.text = (shown[3], shown[4], shown[15]), f"Taken as yours: {shown[13]:.0f} N"
+            self.label.position, self.label.text = (shown[3], shown[4], shown[15]), f"Estimated hand force: {shown[13]:.0f} N"
         return True

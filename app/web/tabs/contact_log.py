@@ -3,6 +3,7 @@
 import csv
 import io
 from collections import deque
+from collections.abc import Callable
 
 import numpy as np
 import viser
@@ -80,11 +81,16 @@ class Contacts:
         self._settings: Settings | None = None
         self._log: deque[tuple[int, Event]] = deque(maxlen=LENGTH)
         self._count = 0
+        self.look_at: Callable[[int | None], None] = lambda tick: None  # told the tick that the plots are to show, None for now
         gui = server.gui
         self.detects = gui.add_checkbox("Detection", loop.settings.contact.on, hint="Of changes in contact")
         self.note = Html(gui)
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Mark", choices(0))
         self.table = Html(gui, svg.contacts(()))
+
+        @self.choice.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self.look_at(next((event.tick for number, event in self._log if name(number) == self.choice.value), None))
 
         @self.detects.on_update
         async def _(event: viser.GuiEvent) -> None:

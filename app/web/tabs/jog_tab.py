@@ -99,7 +99,7 @@ class JogTab:
                 self.buttons[axis, sign] = button
                 self._holds(button, (axis, sign))
         self.home = gui.add_button("Home", color="gray", icon=viser.Icon.HOME, hint="Hold it: to the home posture")
-        self.there = gui.add_button("To the sliders", color="gray", hint="Hold it: to the angles of the sliders")
+        self.there = gui.add_button("Move to these angles", color="gray", hint="Hold it: to the angles of the sliders")
         self._holds(self.home, HOME)
         self._holds(self.there, THERE)
         Html(gui, style.pairs([button._impl.uuid for button in (*self.buttons.values(), self.home, self.there)]))
@@ -112,7 +112,7 @@ class JogTab:
             self.here = gui.add_button("As the arm is now", color="gray")
         with gui.add_folder("Pose of the tool to move to", expand_by_default=False):
             self.at = vector(gui, "Place [mm]", FARTHEST, 0.1, hint="x, y, z in the base")
-            self.turned = vector(gui, "Turned [°]", FULLEST, 0.01, hint="Roll, pitch, yaw")
+            self.turned = vector(gui, "Rotation [°]", FULLEST, 0.01, hint="Roll, pitch, yaw")
             self.now = gui.add_button("As the tool is now", color="gray")
             self.straight = gui.add_button("Straight to it", color="gray", hint="Hold it: along a straight line")
             self._holds(self.straight, STRAIGHT)

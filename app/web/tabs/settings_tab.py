@@ -11,11 +11,11 @@ from app.files.checked import BadInput
 from app.web.running import Running
 from app.web.tuning.limit_presets import AS_SHIPPED, limit_presets, preset_of, told_limits
 from app.web.tuning.presets import as_file, changes, from_file, presets
-from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, section_of, title_of, told
+from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, safety_checksum, section_of, title_of, told
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
-from pendant.all_settings import Settings, describe, find, limits_checksum, value_of
+from pendant.all_settings import Settings, describe, find, value_of
 from pendant.events.event import Event, Kind
 from pendant.limits.axis_locks import JOINTS
 from pendant.settings.schema import SettingRow, Value
@@ -68,7 +68,7 @@ class SettingsTab:
         self.save = gui.add_button("Save settings as file", color="gray", visible=False)
         self.load = gui.add_upload_button("Load settings", mime_type=".yaml", color="gray")
         self._hidden = Html(gui)
-        self.search = gui.add_text("Search", "", hint="Words of a name, a text or a requirement")
+        self.search = gui.add_text("Search", "", hint="Search names and descriptions")
         self.expert = gui.add_checkbox("Expert settings", False, hint="Without it: what most users need, and what was changed.")
         self.section = gui.add_dropdown("Section", tuple(map(title_of, BASIC)))
         self.defaults = gui.add_button("Section as shipped", color="gray")
@@ -271,8 +271,8 @@ class SettingsTab:
                 control.label = text
             self._texts[row.name].show(svg.fine_print(about(row, value)))
         self._tell_limits(settings)
-        state = "Locked while the arm is free or runs" if self._locked else "Taken at once"
-        self._line.show(svg.facts([("Limits checksum", limits_checksum(settings)), ("Changed", f"{count}"), ("Status", state)]))
+        state = "Locked while the arm is free or runs" if self._locked else "Changes apply immediately"
+        self._line.show(svg.facts([("Safety checksum", safety_checksum(settings)), ("Changed", f"{count}"), ("Status", state)]))
         self.listed.show(self._changes(settings) if self._chosen == VIEWS[1] else "")
 
     def _changes(self, settings: Settings) -> str:

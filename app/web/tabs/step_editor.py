@@ -82,7 +82,7 @@ class StepEditor:
         self.list = Html(gui)
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen step", names_of(edits.now))
         Html(gui, style.unseen(self.choice._impl.uuid))  # the list chooses
-        self.order = gui.add_button_group("Chosen", ("↑", "↓", "✕"))
+        self.order = gui.add_button_group("Selected step", ("↑", "↓", "✕"))
         with gui.add_folder("Step to insert"):
             self.kind = gui.add_dropdown("Step", tuple(KINDS))
             self.fields: dict[str, Any] = {
@@ -98,10 +98,10 @@ class StepEditor:
                 "says": gui.add_text("Text", "Ready", hint="What the panel says, with a tone"),
             }
             self.when = gui.add_dropdown("Only if", tuple(CONDITIONS))
-            self.insert = gui.add_button_group("Insert it", ("Before", "After", "Replace"))
-        self.history = gui.add_button_group("Edits", ("Undo", "Redo", "Clear"))
+            self.insert = gui.add_button_group("Insert", ("Before", "After", "Replace"))
+        self.history = gui.add_button_group("History", ("Undo", "Redo", "Clear"))
         self.loop = gui.add_checkbox("Loop", False, hint="The program runs again and again, until Stop")
-        self.repeat = gui.add_number("Times", 1, min=1, max=MOST_RUNS, step=1, hint="That the program runs")
+        self.repeat = gui.add_number("Repeat", 1, min=1, max=MOST_RUNS, step=1, hint="That the program runs")
         self._see_fields()
         self._connect()
 

@@ -43,7 +43,7 @@ MILLIMETRES, DEGREES, SQUARE_CENTIMETRES = Unit(1e3, 1), Unit(180.0 / math.pi, 2
 FAR = MILLIMETRES.many * FARTHEST
 """Largest coordinate that the page takes [mm]: as large as in files."""
 
-ADD, SET, DELETE = "Add", "Set", "✕"
+ADD, SET, DELETE = "Save as new", "Change this", "✕"
 
 REMEMBERED = 50
 """Edits that can be undone."""
@@ -75,12 +75,12 @@ class ToolEditor:
         self.yes = gui.add_button("Yes, change the tool in use", color="gray", visible=False)
         self.no = gui.add_button("No, leave it", color="gray", visible=False)
         self.undo = gui.add_button("Undo", color="gray", disabled=True, hint="Of the table, also of what was edited in 3D")
-        with gui.add_folder("Edit the table", expand_by_default=False):
+        with gui.add_folder("Edit tools", expand_by_default=False):
             self.name = gui.add_text("Name", BARE.name)
             self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=OVERLOAD * arm.payload, step=0.001)
-            self.com = vector(gui, "Centre [mm]", FAR, MILLIMETRES.step, hint="Centre of mass in the flange: x, y, z")
+            self.com = vector(gui, "Centre of mass [mm]", FAR, MILLIMETRES.step, hint="Centre of mass in the flange: x, y, z")
             self.tcp = vector(gui, "TCP [mm]", FAR, MILLIMETRES.step, hint="Tool centre point in the flange: x, y, z")
-            self.rpy = vector(gui, "Turned [°]", FULLEST, DEGREES.step, hint="Roll, pitch, yaw of the tool in the flange")
+            self.rpy = vector(gui, "Rotation [°]", FULLEST, DEGREES.step, hint="Roll, pitch, yaw of the tool in the flange")
             self.known = gui.add_checkbox("Own inertia", False, hint="Else it follows from mass and shape")
             self.moments = vector(gui, "I [kg·cm²]", HEAVIEST, SQUARE_CENTIMETRES.step, hint="xx, yy, zz about the centre")
             self.products = vector(

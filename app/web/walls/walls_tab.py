@@ -67,7 +67,7 @@ class WallsTab:
         self.list = Html(gui)
         self.add = gui.add_button_group("Add", tuple(SHAPES))
         names: tuple[str, ...] = (NONE,)
-        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen", names)
+        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Selected", names)
         self.name = gui.add_text("Name", "")
         self._typed = Typed(self.name, self._rename)
         self.on = gui.add_checkbox("On", True)

@@ -254,7 +254,7 @@ def limits(rows: Iterable[tuple[str, ...]]) -> str:
     """The robot's limits: name, value in both safety modes, tolerance."""
     lines = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
     heads = "".join(f"<th>{head}</th>" for head in ("Limit", "Normal", "Reduced", "Tolerance"))
-    return f'<div class="pd-contacts"><table><tr>{heads}</tr>{lines}</table></div>'
+    return f'<div class="pd-contacts pd-limits"><table><tr>{heads}</tr>{lines}</table></div>'
 
 
 def listing(rows: Iterable[tuple[int, str]], marked: int, state: str) -> str:

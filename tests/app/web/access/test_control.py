@@ -41,7 +41,7 @@ def two(served: Served, join: Join, clock: Clock) -> tuple[RawClient, RawClient,
     until(lambda: len(strips) == 2, "both have a strip")
     assert "Nobody has control" in strips[0].text.shown
     press(first, strips[0].take)
-    until(lambda: shown(strips, "You have control", "Client 1 has control"), "client 1 has it")
+    until(lambda: shown(strips, "You have control", "Window 1 has control"), "client 1 has it")
     until(lambda: not strips[1].take.visible, "nobody can take it")
     return first, second, strips
 
@@ -81,7 +81,7 @@ def test_control_is_taken_shown_and_given_back(served: Served, two: Two, loop: F
     assert loop.desk.take().touches == ()
     until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
-    until(lambda: shown(strips, "Client 2 has control", "You have control"), "client 2 has it")
+    until(lambda: shown(strips, "Window 2 has control", "You have control"), "client 2 has it")
 
 
 def test_after_ten_silent_seconds_and_not_before_somebody_else_takes_over(
@@ -96,7 +96,7 @@ def test_after_ten_silent_seconds_and_not_before_somebody_else_takes_over(
     clock.now += 0.02
     until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
-    until(lambda: shown(strips, "Client 2 has control", "You have control"), "client 2 has it")
+    until(lambda: shown(strips, "Window 2 has control", "You have control"), "client 2 has it")
     first.drag("start")
     first.hold(served.panel.free_drive._impl.uuid)
     until(lambda: served.guard.refused["not the operator"] >= 2, "the former operator is refused")
@@ -110,9 +110,9 @@ def test_a_watcher_is_told_when_it_may_act_and_who_lost_control_that_it_has(serv
     assert "data-pd-watching" in strips[1].text.shown
     assert "data-pd-watching" not in strips[0].text.shown
     clock.now += SILENCE
-    until(lambda: shown(strips, "Free for others: nothing done for 10 s.", "whatever you press takes control"), "the warning")
+    until(lambda: shown(strips, "Free for others: nothing done for 10 s.", "Press anything to take over"), "the warning")
     press(second, strips[1].take)
-    until(lambda: shown(strips, "You lost control: Client 2 has control", "You have control"), "the former operator is told")
+    until(lambda: shown(strips, "You lost control: Window 2 has control", "You have control"), "the former operator is told")
 
 
 def test_who_is_left_is_told_that_the_connection_of_who_had_control_closed(served: Served, two: Two) -> None:
@@ -130,7 +130,7 @@ def test_whoever_acts_first_after_the_silence_takes_over_by_that(served: Served,
     clock.now += SILENCE
     second.set(served.lab.force._impl.uuid, value=90.0)
     until(lambda: served.hand.cap == 90.0, "it counts")
-    until(lambda: shown(strips, "Client 2 has control", "You have control"), "client 2 has it")
+    until(lambda: shown(strips, "Window 2 has control", "You have control"), "client 2 has it")
 
 
 def test_who_holds_the_arm_is_not_silent(served: Served, two: Two, clock: Clock, loop: FakeLoop) -> None:
@@ -195,14 +195,14 @@ def test_the_strip_of_another_client_cannot_be_pressed(served: Served, join: Joi
 def test_who_watches_asks_for_control_and_the_holder_gives_it(served: Served, two: Two, clock: Clock) -> None:
     first, second, strips = two
     press(second, strips[1].ask)
-    until(lambda: shown(strips, "Client 2 asks for control", "Asked. Wait for an answer."), "both are told")
+    until(lambda: shown(strips, "Window 2 asks for control", "Asked. Wait for an answer."), "both are told")
     assert served.guard.operator.holder == 0
     assert strips[0].release.label == "Give"
     assert strips[1].ask.disabled
     second.set(served.lab.force._impl.uuid, value=90.0)
     until(lambda: served.guard.refused["not the operator"] == 1, "to ask is not to have")
     press(first, strips[0].release)
-    until(lambda: shown(strips, "Watching: Client 2 has control", "You have control"), "given")
+    until(lambda: shown(strips, "Watching: Window 2 has control", "You have control"), "given")
     assert strips[1].release.label == "Release"
     second.set(served.lab.force._impl.uuid, value=90.0)
     until(lambda: served.hand.cap == 90.0, "client 2 may act")
@@ -216,7 +216,7 @@ def test_a_request_ends_with_who_asked_and_with_who_was_asked(served: Served, tw
     until(lambda: "You have control" in strips[0].text.shown, "who asked has gone")
     third = join_again(served)
     press(third, strips[2].ask)
-    until(lambda: "Client 3 asks" in strips[0].text.shown, "asked again")
+    until(lambda: "Window 3 asks" in strips[0].text.shown, "asked again")
     clock.now += SILENCE
     until(lambda: strips[2].take.visible, "it is free")
     press(third, strips[2].take)

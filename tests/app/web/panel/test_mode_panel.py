@@ -6,8 +6,9 @@ from collections.abc import Callable
 import pytest
 
 from app.web.server import Served
+from app.web.tuning.setting_words import safety_checksum
 from app.web.widgets.svg import Colour
-from pendant.all_settings import Settings, apply, limits_checksum
+from pendant.all_settings import Settings, apply
 from pendant.events.event import Kind
 from pendant.freedrive.periods import Remaining
 from pendant.inputs import Button, Command
@@ -200,10 +201,10 @@ def test_the_wall_that_the_arm_is_nearest_to_is_told(loop: FakeLoop, still: Serv
 
 def test_the_checksum_of_the_limits_is_shown(loop: FakeLoop, still: Served) -> None:
     still.docks.show(loop.latest())
-    assert limits_checksum(Settings()) in still.panel.numbers.shown
+    assert safety_checksum(Settings()) in still.panel.numbers.shown
     loop.settings = apply(Settings(), {"free_drive.gain": 2.0})
     still.docks.show(loop.latest())
-    assert limits_checksum(loop.settings) in still.panel.numbers.shown
+    assert safety_checksum(loop.settings) in still.panel.numbers.shown
 
 
 def test_the_log_is_newest_first_and_escaped(loop: FakeLoop, still: Served) -> None:

@@ -33,7 +33,7 @@ def test_both_are_there_while_a_force_is_told(loop: FakeLoop, still: Served) -> 
     assert still.scene.show(loop.latest())
     assert not still.scene.show(loop.latest())
     assert [node.visible for node in (drawn.arrow, drawn.ellipsoid, drawn.label)] == [True] * 3
-    assert drawn.label.text == "Taken as yours: 30 N"
+    assert drawn.label.text == "Estimated hand force: 30 N"
     loop.user = None
     assert still.scene.show(loop.latest())
     assert [node.visible for node in (drawn.arrow, drawn.ellipsoid, drawn.label)] == [False] * 3
@@ -79,8 +79,8 @@ def test_a_force_that_the_joints_tell_is_an_arrow_alone(loop: FakeLoop, still: S
 def test_the_figures_tell_both_and_what_they_mean(loop: FakeLoop, still: Served) -> None:
     panel = still.docks.panel
     still.docks.show(loop.latest())
-    assert "Taken as yours" not in panel.numbers.shown
+    assert "Estimated hand force" not in panel.numbers.shown
     loop.user = UncertainForce((0.0, 3.0, 4.0), VARIANCES / WITHIN_95)
     still.docks.show(loop.latest())
-    assert "5.0 N, ± 1.0 to 3.0 N" in panel.numbers.shown
+    assert "5.0 N (± 1.0 to 3.0 N)" in panel.numbers.shown
     assert 'title="The force that free-drive takes for your hand' in panel.numbers.shown

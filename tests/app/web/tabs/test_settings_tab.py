@@ -8,8 +8,8 @@ import pytest
 from app.web.server import Served
 from app.web.tabs.settings_tab import BASIC, VIEWS
 from app.web.tuning.presets import as_file, from_file, presets
-from app.web.tuning.setting_words import CHANGED, SAFETY, SECTIONS, section_of, title_of
-from pendant.all_settings import Settings, apply, describe, limits_checksum
+from app.web.tuning.setting_words import CHANGED, SAFETY, SECTIONS, safety_checksum, section_of, title_of
+from pendant.all_settings import Settings, apply, describe
 from pendant.limits.axis_locks import JOINTS
 from pendant.tick.modes import Mode
 from tests.app.web.fake_loop import FakeLoop
@@ -101,7 +101,7 @@ def test_a_changed_value_goes_to_the_desk_and_is_marked_once_it_holds(served: Se
     assert not control.label.startswith(CHANGED)
     loop.settings = apply(Settings(), {"free_drive.period": 7.5})
     until(lambda: control.label.startswith(CHANGED), "marked")
-    until(lambda: limits_checksum(loop.settings) in served.docks.settings._line.shown, "the checksum")
+    until(lambda: safety_checksum(loop.settings) in served.docks.settings._line.shown, "the checksum")
     client.set(served.docks.settings.defaults._impl.uuid, value=True)
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings.get("free_drive.period") == 3.0, "the default")
 

@@ -62,7 +62,7 @@ def test_a_tool_is_added_and_chosen_then(served: Served, join: Join, loop: FakeL
     client = join()
     enter(client, editor.name, " hook ")
     enter(client, editor.tcp, (1.0, 0.0, 250.0))
-    client.set(editor.change._impl.uuid, value="Add")
+    client.set(editor.change._impl.uuid, value="Save as new")
     hook = msgspec.structs.replace(GRIPPER, name="hook", tcp=[0.001, 0.0, 0.25])
     assert wish(loop) == (GRIPPER, SPHERE, TURNED, hook)
     assert served.docks.tools.tool.value == "gripper", "nobody took it yet"
@@ -78,7 +78,7 @@ def test_a_tool_is_changed_as_one(join: Join, loop: FakeLoop, editor: ToolEditor
     enter(client, editor.known, True)
     enter(client, editor.moments, (12.0, 12.0, 9.0))
     enter(client, editor.products, (0.0, 0.5, 0.0))
-    client.set(editor.change._impl.uuid, value="Set")
+    client.set(editor.change._impl.uuid, value="Change this")
     until(lambda: editor.yes.visible, "it asks: the tool is in use")
     client.set(editor.yes._impl.uuid, value=True)
     inertia = [1.2e-3, 1.2e-3, 9e-4, 0.0, 5e-5, 0.0]
