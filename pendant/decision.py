@@ -35,7 +35,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     phase: Phase
     law: Law
     move: Move | None  # the move to follow, under Law.FOLLOW
-    gain: float  # factor on J^T F_user, under Law.FREE (FD-3)
+    gain: float  # factor on J^T F_user, under Law.FREE; 0 adds nothing of it (FD-3)
     force_cap: float  # largest force of F_user that is amplified [N] (FD-3)
     baseline: tuple[float, ...]  # F_user that is the sensor's bias, axes of F [N, N·m], subtracted under Law.FREE
     periods: tuple[Remaining, ...]
@@ -44,6 +44,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     step: int = 0  # of the program, from 1; 0 unless it is running or paused
     monitored: tuple[Monitored, ...] = ()  # parameters against their limits, while the activation sequence checks them
     contacts: tuple[Contact, ...] = ()  # changes in contact seen in this tick (CD-16)
+    flange_help: bool = False  # a hand is helped by what the flange sensor tells, under Law.FREE (FD-3)
     looks: bool = True  # for changes in contact, now or as soon as something asks for them: the next tick needs their signals
     tool_on: bool = False  # what the program switches (CD-15)
     outputs: frozenset[int] = frozenset()  # digital outputs that the program has switched on
@@ -74,8 +75,3 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     script_done: int = 0  # number of the last motion of a script that is done
     pull: PullCauses | None = None  # what pulls at the free arm (FD-19); None while free-drive is off
     taken: TakenForce | None = None  # for the user's force (FD-19); None while free-drive is off
-
-    @property
-    def amplified(self) -> bool:
-        """The user's force is amplified, where its sensor is valid."""
-        return self.gain > 0.0

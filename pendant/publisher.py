@@ -71,7 +71,7 @@ class Publisher:
         periods = free.periods() if use.free_drive.remainders and not free.idle else ()
         walls = () if phase is _OFF else free.walls()
         monitored = free.monitored() if trying else ()
-        amplified = helping and balance is None and not (trying and not use.sequence.amplified)
+        flange_help = helping and balance is None and not (trying and not use.sequence.amplified)
         active = sequencer.state is _RUNNING or sequencer.state is _PAUSED
         return Decision(
             mode=mode,
@@ -79,7 +79,8 @@ class Publisher:
             phase=phase,
             law=law,
             move=robot.move,
-            gain=use.free_drive.gain if amplified else 0.0,
+            gain=use.free_drive.gain if flange_help else 0.0,
+            flange_help=flange_help,
             force_cap=use.free_drive.force_cap,
             baseline=free.baseline,
             periods=periods,

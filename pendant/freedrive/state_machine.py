@@ -128,7 +128,7 @@ class FreeDrive:
 
     @property
     def helping(self) -> bool:
-        """The user's force is amplified: not while a payload may have dropped (FD-19)."""
+        """The flange sensor helps the hand: not while a payload may have dropped (FD-19)."""
         return self._bias.used and not (self.arm is not None and self.arm.suspect)
 
     def sense(self, held: bool, signal: Presence) -> None:

@@ -111,8 +111,8 @@ class FreeDriveLaw:
 
         Args:
             estimate: this tick's estimate.
-            decision: while the arm is only freed to see whether it stays, nothing helps the hand; else gain 0 means that the
-                flange sensor is not to be used, and hands are felt by the joints alone.
+            decision: while the arm is only freed to see whether it stays, nothing helps the hand; without `flange_help` hands
+                are felt by the joints alone.
             jacobian: of the flange (6, n), linear first, axes of B.
             friction: its estimate.
             with_friction: take friction off the hand.
@@ -126,7 +126,7 @@ class FreeDriveLaw:
         if decision.balance is not None:
             self._balancing.add(estimate, decision.balance, jacobian, torque)
             return torque
-        if not decision.amplified and decision.phase is Phase.SEQUENCE:
+        if not decision.flange_help and decision.phase is Phase.SEQUENCE:
             return torque
         locks = decision.locks
         constraint, static = self._constraint, torque
@@ -141,7 +141,7 @@ class FreeDriveLaw:
         if decision.damping is not None:
             self._damping.add(estimate, decision.damping, decision.speed_limits, jacobian=jacobian, torque=torque)
             help = self._damping.help
-        if estimate.wrench_valid and decision.amplified:
+        if estimate.wrench_valid and decision.flange_help:
             gain = help * decision.gain
             slack = decision.slack
             felt = estimate.F_user, decision.baseline, (slack.force, slack.torque)  # a named tuple takes a kernel 0.5 µs more

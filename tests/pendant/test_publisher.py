@@ -88,6 +88,7 @@ class Parts:
         """Of a tick of held free-drive."""
         return {
             "mode": Mode.FREE_DRIVE, "safety": Safety.REDUCED, "phase": Phase.HELD, "law": Law.FREE, "move": MOVE, "gain": 2.5,
+            "flange_help": True,
             "force_cap": 70.0, "baseline": self.free.baseline, "periods": PERIODS, "events": (), "program": ProgramState.PAUSED,
             "step": 3, "monitored": (), "contacts": (), "looks": False, "tool_on": True, "outputs": frozenset({3}),
             "walls": ("wall",), "grip": "in the middle",
@@ -122,7 +123,7 @@ TRIED = {
     ("changes", "differs"),
     [
         ({}, {}),
-        ({"helping": False}, {"gain": 0.0}),
+        ({"helping": False}, {"gain": 0.0, "flange_help": False}),
         ({"state": ProgramState.RUNNING}, {"program": ProgramState.RUNNING}),
         ({"state": ProgramState.STOPPED}, {"program": ProgramState.STOPPED, "step": 0}),
         ({"arm": None}, {"damping": None, "singularity": None, "slack": SURE, "doubtful": False, "taken": None}),
@@ -131,7 +132,7 @@ TRIED = {
         ({"guided": Guided()}, {}),
         ({"guided": Guided(axes=AXES, R_BU=TURNED)}, {"locks": locks_of(AXES, TURNED, SETTINGS.axes)}),
         ({"phase": Phase.OFF}, {"phase": Phase.OFF, "walls": ()}),
-        (TRYING, {**TRIED, "balance": "balance", "monitored": ("monitored",), "gain": 0.0}),
+        (TRYING, {**TRIED, "balance": "balance", "monitored": ("monitored",), "gain": 0.0, "flange_help": False}),
     ],
 )
 def test_it_tells_what_is_and_where_it_applies(changes: dict[str, object], differs: dict[str, object]) -> None:
@@ -155,7 +156,7 @@ def test_in_the_sequence_the_force_is_amplified_where_that_is_set_and_nothing_is
     parts = Parts(apply(SETTINGS, {"sequence.amplified": amplified}), phase=phase, balance=balance)
     gain = 2.5 if phase is Phase.HELD or (amplified and balance is None) else 0.0
     trying = {"balance": balance, "monitored": ("monitored",)} if phase is Phase.SEQUENCE else {}
-    assert told(parts.step()) == parts.expected(phase=phase, gain=gain, **trying)
+    assert told(parts.step()) == parts.expected(phase=phase, gain=gain, flange_help=gain > 0.0, **trying)
 
 
 def test_without_the_switch_no_periods_are_told() -> None:
@@ -213,10 +214,10 @@ def test_new_settings_are_told_from_the_next_decision_on() -> None:
     assert (after.locks, after.limits) != (before.locks, before.limits)
 
 
-@pytest.mark.parametrize(("gain", "amplified"), [(0.0, False), (1e-9, True), (2.0, True)])
-def test_a_force_is_amplified_by_any_gain_above_none(gain: float, amplified: bool) -> None:
-    told = Decision(Mode.FREE_DRIVE, Safety.NORMAL, Phase.HELD, Law.FREE, None, gain, 50.0, (0.0,) * 6, (), ())
-    assert told.amplified is amplified
+def test_without_amplification_the_sensor_helps_all_the_same() -> None:
+    """FD-3: gain 0 adds nothing of the user's force; the flange sensor tells on whom friction is taken off."""
+    parts = Parts(apply(SETTINGS, {"free_drive.gain": 0.0}))
+    assert told(parts.step()) == parts.expected(gain=0.0)
 
 
 @pytest.mark.parametrize("audible", [True, False])

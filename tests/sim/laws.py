@@ -78,6 +78,7 @@ def decision(
         law=law,
         move=move,
         gain=gain,
+        flange_help=gain > 0.0,
         force_cap=cap,
         baseline=baseline or (0.0,) * 6,
         periods=(),

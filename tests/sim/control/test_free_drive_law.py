@@ -148,6 +148,18 @@ def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -
     assert np.abs((helped - plain)[none]).max(initial=0.0) < 1e-12
 
 
+def test_without_amplification_a_hand_at_the_flange_gets_its_friction_taken_off() -> None:
+    """FD-3: a gain of 0 is the limit of a small one."""
+    seen = estimate(q=Q, R_BF=R, F_user=np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.0]), theta_d=np.full(N, 0.2))
+    free = decision(Law.FREE, gain=1e-9)
+    none, small, deaf = (
+        law().torque(seen, how, JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True)
+        for how in (replace(free, gain=0.0), free, replace(free, gain=0.0, flange_help=False))
+    )
+    np.testing.assert_allclose(none, small, atol=1e-6)
+    assert np.abs(none - deaf).max() > 1.0
+
+
 def test_where_nobody_may_lead_the_arm_it_gets_no_help_with_its_friction_and_brakes() -> None:
     """FD-19. The hand's own force is amplified on."""
     wrench, speed = np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.0]), np.full(N, 0.2)
