@@ -47,6 +47,7 @@ class Teach:
             self.message = Html(gui)
             self.steps = StepEditor(gui, self.edits, self._edited)
             self.step = gui.add_button("Do one step", color="gray", hint="The chosen step, then the next")
+            enable(self.step, False)  # there is none yet
         with gui.add_folder("Waypoints"):
             self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", waypoints_of(self.lesson))
             self.edit = gui.add_button_group("Arm", ("Go to", "Re-teach"))

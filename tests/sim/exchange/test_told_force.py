@@ -76,7 +76,10 @@ def test_before_free_drive_there_is_none_and_without_the_flange_sensor_no_covari
     assert user is not None
     assert user.covariance is not None
     assert user.at == (0.0, 0.0, 0.14), "where the tool does not hide it"
+    bench = Bench(Scenario(mismatch="nominal", tool=tool))
     bench.change(SensorFault(sensor="force_torque", outage=True))
+    bench.run(0.5)
+    bench.enter()
     bench.run(0.1)
     assert bench.mode is Mode.FREE_DRIVE
     assert bench.simulation.snapshot().user == ((0.0, 0.0, 0.0), None, (0.0, 0.0, 0.14))
