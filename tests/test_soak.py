@@ -40,7 +40,7 @@ def test_a_user_uses_the_page_as_it_may_and_comes_back(monkeypatch: pytest.Monke
     loop = FakeLoop()
     app = serve(loop, ARM, Scenario())
     user, looker = User(app.url, 1), User(app.url, 2, idle=True)
-    user.run(time.monotonic() + 8.0)
+    user.run(time.monotonic() + 14.0)
     looker.run(time.monotonic() + 1.0)
     app.close()
     assert user.stayed
