@@ -111,17 +111,12 @@ class Containment:
 
         A wall round a part is no part of it: free-drive anchors it, and a hand takes it along.
         """
-        made = self._workspace
-        if made is None or made.borders is not self.borders or made.walls is not walls:
-            made = self._workspace = self._areas(walls, [area for area in self.borders if isinstance(area, Area) and area.keeps])
+        made = self._workspace = self._areas(self._workspace, walls, triggers=False)
         return made.space
 
     def beyond(self, estimate: Estimate, walls: WallSettings) -> str:
         """Name of the area that triggers REDUCED because its part is beyond it, or cannot be placed; "" where none is (RL-7)."""
-        made = self._triggers
-        if made is None or made.borders is not self.borders or made.walls is not walls:
-            areas = [area for area in self.borders if isinstance(area, Area) and area.on and area.triggers_reduced]
-            made = self._triggers = self._areas(walls, areas)
+        made = self._triggers = self._areas(self._triggers, walls, triggers=True)
         before, self._beyond = self._beyond, ""
         if made.space is not None:
             for area, distance in zip(made.space.areas, made.space.distances(self._seen(estimate)), strict=True):
@@ -130,9 +125,12 @@ class Containment:
                     break
         return self._beyond
 
-    def _areas(self, walls: WallSettings, areas: list[Area]) -> "Areas":
-        switched = [_switched(area, walls) for area in areas if walls.on]
-        held = tuple([area for area in switched if isinstance(area, Area)])
+    def _areas(self, made: "Areas | None", walls: WallSettings, *, triggers: bool) -> "Areas":
+        """The areas that trigger REDUCED, or those that keep their part; what was `made` before, while it holds."""
+        if made is not None and made.borders is self.borders and made.walls is walls:
+            return made
+        switched = [_switched(border, walls) for border in self.borders if border.on and walls.on]
+        held = tuple([area for area in switched if isinstance(area, Area) and area.triggers_reduced is triggers])
         return Areas(self.borders, walls, Workspace(held, self._frames) if held else None)
 
     def reached(self, estimate: Estimate, walls: WallSettings) -> list[Event]:

@@ -117,7 +117,7 @@ def test_only_what_is_known_is_left_out() -> None:
         "OperatingSensitivity": ["_given"],
         "Equipping": ["_shape", "_room"],
         "Barrier": ["_shape"],
-        "Containment": ["_workspace"],
+        "Containment": ["_triggers", "_workspace"],
         "Anchor": ["_decide"],
         "LimitWatch": ["_of", "_limits", "_normal"],
     }

@@ -109,7 +109,7 @@ def test_friction_by_the_deflection_is_learned_in_contact_and_by_the_model_where
     """AF-2; with an output encoder lost nothing is made up of the angle that is."""
     learned = []
     for lost in (False, True):
-        simulation = running(1.0, mismatch="off")
+        simulation = running(1.0, mismatch="on")
         simulation.supervisor.settings = apply(Settings(), {"joint_control.friction_from": "deflection"})
         if lost:
             simulation.tick(Wishes(NOTHING, (), (SensorFault(sensor="output_encoder", outage=True),)))
