@@ -23,7 +23,7 @@ ZEROS = (0.0,) * 6
 EVERY = 0.004
 """Between two words to the robot [s]."""
 
-KEPT_ALIVE = 3.0
+KEPT_ALIVE = 15.0
 """Time in which the next word must follow [s]: this machine may be busy."""
 
 PATIENCE = 15.0

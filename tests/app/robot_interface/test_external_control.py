@@ -33,6 +33,9 @@ OURS = Path(__file__).parent / "external_control.script"
 GENUINE = "PENDANT_EXTERNAL_CONTROL"
 
 HOME = [0.0, -1.2, 1.5, -1.87, -1.57, 0.0]
+AT_HOME = 0.01
+"""Largest distance of a joint at which the arm is at home [rad]."""
+
 ASIDE = [0.06, *HOME[1:]]
 QUICK = [2.0, 5.0, 0.0, 0.0, 0.0, 0.0]
 PROBE = {"name": "probe", "mass": 0.3, "com": [0.0, 0.0, 0.05], "tcp": [0.0, 0.0, 0.12], "length": 0.12, "radius": 0.02}
@@ -101,7 +104,7 @@ def seen(served: ServedRobot) -> Iterator[RTDEReceiveInterface]:
     client.disconnect()
 
 
-@pytest.fixture(scope="module", params=["ours", "genuine"])
+@pytest.fixture(params=["ours", "genuine"])
 def cell(request: pytest.FixtureRequest, served: ServedRobot, seen: RTDEReceiveInterface) -> Iterator[Cell]:
     path = OURS if request.param == "ours" else os.environ.get(GENUINE)
     if path is None:
@@ -109,7 +112,10 @@ def cell(request: pytest.FixtureRequest, served: ServedRobot, seen: RTDEReceiveI
     with ExternalControlClient() as control:
         control.upload((served.host, served.ports["primary"]), Path(path).read_text(encoding="utf-8"), VERSION[:3])
         control.do(ControlMode.IDLE)
-        yield Cell(served, seen, control)
+        cell = Cell(served, seen, control)
+        if np.abs(cell.q - HOME).max() > AT_HOME:
+            cell.home()
+        yield cell
 
 
 def test_servo_targets_and_poses_are_followed(cell: Cell) -> None:
