@@ -1,6 +1,4 @@
-"""The product from Python, all of it: a session, a simulation stepped by hand, a recording read into numpy.
-
-    from app.api import read, run, session, stepped
+"""What `pendant_sim` gives: a session, a simulation stepped by hand, a study, a recording read into numpy.
 
 `read(path)` gives an `app.log_reading.reader.Log`. Errors are `BadInput`, whose text is one line: file, field, value, what is
 allowed.
@@ -8,7 +6,7 @@ allowed.
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -23,6 +21,9 @@ from pendant.inputs import Button, Command, Inputs
 from sim.exchange.desk import Wishes
 from sim.plant.touch import Pull, Push, Touch
 from sim.simulation import Simulation
+
+if TYPE_CHECKING:
+    from app.studies.sweep import Swept
 
 __all__ = [
     "BadInput",
@@ -40,6 +41,7 @@ __all__ = [
     "session",
     "step",
     "stepped",
+    "sweep",
 ]
 
 
@@ -72,17 +74,17 @@ def read(path: str | Path, begin: float | None = None, end: float | None = None)
     return read_log(Path(path), begin, end)
 
 
-def run(what: Session, out: str | Path | None = None) -> RunOutcome:
+def run(what: str | Path | dict[str, Any] | Session, out: str | Path | None = None) -> RunOutcome:
     """Run a session as fast as it goes.
 
     Args:
-        what: from `session`.
+        what: as `session` takes it.
         out: folder for events.jsonl, log.mcap, summary.json and report.html; None: nothing is kept.
 
     Raises:
-        BadInput: the results cannot be written.
+        BadInput: the session cannot be used, or the results cannot be written.
     """
-    return work(Job("session", what, None if out is None else Path(out)))
+    return work(Job("session", session(what), None if out is None else Path(out)))
 
 
 def run_many(sessions: Iterable[Session]) -> list[RunOutcome]:
@@ -92,6 +94,27 @@ def run_many(sessions: Iterable[Session]) -> list[RunOutcome]:
     """
     found = dict(run_all(Job("session", each, None) for each in sessions))
     return [found[k] for k in range(len(found))]
+
+
+def sweep(study: str | Path, out: str | Path, *, quick: bool = False, seed: int | None = None) -> "Swept":
+    """Run a study on all cores, as `pendant sweep` does; it goes on where it stopped.
+
+    In a script, call it under `if __name__ == "__main__":`, since the other processes import the script.
+
+    Args:
+        study: a study file, or the name of a bundled study.
+        out: folder for rows/ and report.html.
+        quick: the small size that the study names.
+        seed: of its first run; None: the study's own.
+
+    Raises:
+        BadInput: the study does not make sense, or `out` holds another one.
+    """
+    from app.studies.study_file import open_study
+    from app.studies.sweep import sweep as swept
+
+    content, base = open_study(str(study), quick=quick, seed=seed)
+    return swept(content, base, Path(out), where=Path(study).name)
 
 
 def stepped(what: Session) -> Simulation:

@@ -47,6 +47,25 @@ app = typer.Typer(
 )
 
 
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        from app.engine.source import source_commit
+        from app.files.versions import versions
+
+        typer.echo(f"pendant {versions()['pendant']}, commit {source_commit()}")
+        raise typer.Exit
+
+
+@app.callback()
+def begin(
+    *,
+    _version: Annotated[
+        bool, typer.Option("--version", help="Show the version and the commit.", is_eager=True, callback=_say_version)
+    ] = False,
+) -> None:
+    """A teach pendant and the cobot behind it, simulated: in the browser, or headless."""
+
+
 @app.command(
     epilog=example(
         "pendant serve --open",

@@ -6,6 +6,7 @@ import typer
 
 from app.ending import end_now, signal_that_came
 from app.files.bad_input import BadInput
+from app.files.extras import to_install
 
 # Usage errors, whichever click typer was built on: the base of the one that typer exports.
 UsageError: type[Exception] = typer.BadParameter.__mro__[1]
@@ -36,6 +37,12 @@ def _done(app: typer.Typer) -> int:
         return refuse(text)
     except BadInput as error:
         return refuse(str(error))
+    except ModuleNotFoundError as error:
+        command = sys.argv[1]
+        wanted = to_install(error.name, command)
+        if wanted is None:
+            raise
+        return refuse(f"{command} {wanted}")
     except (typer.Abort, KeyboardInterrupt):
         return GIVEN_UP
     except Exception:

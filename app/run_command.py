@@ -10,6 +10,7 @@ from app.command_exit import refuse
 from app.command_options import AnyFile, Out, Seed, Seeds, SessionNames, Set, example, setting
 from app.ending import ending
 from app.files.bad_input import ABSENT, BadInput
+from app.files.extras import there, to_install
 from app.session.prepare import prepare
 from app.session.session_file import Session, find_all, opened
 
@@ -41,6 +42,7 @@ def run_(
 
     Exit code 1 when an expectation is not met, 2 when a file cannot be used; the others run all the same.
     """
+    from app.report.files import DRAWS
     from app.runs.jobs import Job, work
     from app.runs.junit import write as write_junit
     from app.runs.progress import progress, show, show_all
@@ -67,6 +69,8 @@ def run_(
             show_all([*found], [*found.values()], out)
     for error in refused:
         refuse(str(error))
+    if found and chosen is None and not there(DRAWS):
+        typer.echo(f"There is no report.html: that {to_install(DRAWS)}")
     if junit is not None:
         write_junit(junit, found, [str(error) for error in refused])
     if refused:

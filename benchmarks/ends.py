@@ -20,7 +20,7 @@ from typing import Any
 from app.files.bad_input import BadInput
 from app.log_reading.reader import read
 from app.robot_interface.ports import PORTS
-from app.testing import free_addresses
+from app.served_robot import free_addresses
 from benchmarks.common import ROOT, Report, main
 from pendant.tick.modes import TICK
 
@@ -34,7 +34,7 @@ CLIENTS = 20
 TOLD = 1.0  # from the last tick in the file to the event [s]
 ROOM = (20_000, 2_000_000)  # of a disk [bytes]
 
-COMMAND = [sys.executable, "-c", "from app.start import main; main()"]
+COMMAND = [sys.executable, "-c", "from pendant_sim.start import main; main()"]
 LOAD = [sys.executable, "-c", "while True: pass"]
 
 LIMITED = """

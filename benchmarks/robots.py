@@ -15,7 +15,7 @@ FIRST = """
 import sys, tempfile, time
 from pathlib import Path
 begun = time.perf_counter()
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 for number in range(int(sys.argv[1])):
     robot = ServedRobot(Path(tempfile.mkdtemp()))
     robot.start()

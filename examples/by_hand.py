@@ -3,7 +3,7 @@
 import math
 import sys
 
-from app.api import Button, Push, session, step, stepped
+from pendant_sim import Button, Push, session, step, stepped
 
 if __name__ == "__main__":
     simulation = stepped(session({"title": "by hand", "duration": 1.0, "settings": {"activation.period": 0.2}}))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.api import read, run, session
+from pendant_sim import read, run, session
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:

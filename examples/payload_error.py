@@ -5,7 +5,7 @@ import sys
 import numpy as np
 from matplotlib.figure import Figure
 
-from app.api import run_many, session
+from pendant_sim import run_many, session
 
 if __name__ == "__main__":
     count, errors = int([*sys.argv, "50"][1]), np.linspace(-1.5, 1.5, 7)

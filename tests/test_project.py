@@ -38,14 +38,14 @@ def test_the_readme_example_session_is_valid_and_passes(tmp_path: Path) -> None:
     assert [verdict for verdict in outcome.verdicts if not verdict.passed] == []
 
 
-def test_the_readme_example_test_passes(tmp_path: Path) -> None:
+def test_the_readme_example_test_passes() -> None:
     match = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
     assert match is not None
     names: dict[str, object] = {}
     exec(match[1], names)
     test = names["test_the_arm_holds"]
     assert callable(test)
-    test(tmp_path)
+    test()
 
 
 def test_ci_runs_make_test() -> None:
@@ -57,8 +57,8 @@ def test_ci_runs_make_test() -> None:
 
 def test_the_wheel_takes_all_rooms_and_installs_the_command() -> None:
     wheel = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
-    assert set(wheel["packages"]) == {"app", "sim", "pendant", "assets"}
-    assert PROJECT["project"]["scripts"] == {"pendant": "app.start:main"}
+    assert set(wheel["packages"]) == {"pendant_sim", "app", "sim", "pendant", "assets"}
+    assert PROJECT["project"]["scripts"] == {"pendant": "pendant_sim.start:main"}
 
 
 def test_the_licence_is_mit() -> None:

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from app.engine.dask_client import ANSWER, PATIENCE, compare, connect, cores, crippled, dashboard, end_embedded
 from app.engine.source import identity
 from app.files.bad_input import ABSENT, BadInput
+from app.files.extras import there
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -46,7 +47,8 @@ def spread(
 ) -> Iterator[tuple[int, R]]:
     """Do `work` on all items; gives the place of each among them with its result, in the order in which they end.
 
-    A single item, or one worker, is this process itself. `items` may be a generator: it is read as far as needed.
+    A single item, or one worker, is this process itself; so is everything where Dask is not installed. `items` may be a
+    generator: it is read as far as needed.
 
     Args:
         work: a function that a worker can import, or of the main module.
@@ -61,7 +63,7 @@ def spread(
     """
     items = iter(items)
     first = list(islice(items, 2))
-    if scheduler is None and (len(first) < 2 or workers == 1):
+    if scheduler is None and (len(first) < 2 or workers == 1 or not there("distributed")):
         for place, item in enumerate(chain(first, items)):
             yield place, work(item)
         return

@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-COMMAND = "from app.start import main; main()"
+COMMAND = "from pendant_sim.start import main; main()"
 
 
 class Exporting:

@@ -11,8 +11,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-import uvicorn
-
 from app.files.bad_input import BadInput
 from app.log.live import LiveRecording
 from app.robot_interface.client_ports.client_session import PrimarySession, RealtimeSession, StreamSession, Talking
@@ -21,8 +19,6 @@ from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.robot_interface.dashboard.dashboard_session import DashboardSession
-from app.robot_interface.faults.control_channel import ControlChannel
-from app.robot_interface.faults.timed_http import TimedHttp
 from app.robot_interface.gripper.gripper_session import GripperSession
 from app.robot_interface.ports import CONTROL, DASHBOARD, GRIPPER, PORTS, PRIMARY, READ_ONLY, REALTIME, RTDE, SECONDARY
 from app.robot_interface.rtde.rtde_inputs import RtdeInputs
@@ -74,6 +70,12 @@ class RobotInterfaces:
         recording: LiveRecording | None = None,
         files: AllowedFiles = SHIPPED_ALONE,
     ) -> None:
+        # Here, for a page without a network does without the extra that has them.
+        import uvicorn
+
+        from app.robot_interface.faults.control_channel import ControlChannel
+        from app.robot_interface.faults.timed_http import TimedHttp
+
         if arm.n != JOINTS:
             raise BadInput("--interfaces", "robot", arm.name, f"an arm of {JOINTS} joints: these protocols know no other")
         self.host, self.ports = host, {name: number + offset for name, number in PORTS.items()}

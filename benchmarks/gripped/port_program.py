@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.robot_interface.ports import DASHBOARD, PRIMARY, REALTIME
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 
 PART = [-0.45, -0.13, 0.03]
 """Where the part lies at first, in W [m]."""

@@ -19,7 +19,7 @@ from websockets.exceptions import ConnectionClosed
 from app.files.bad_input import BadInput
 from app.log_reading.reader import read
 from app.robot_interface.ports import PORTS
-from app.testing import free_addresses
+from app.served_robot import free_addresses
 from benchmarks.common import Report, main
 from benchmarks.races.attackers import Attacked, Attacker, Caller, Laboratory, Reader, Recorder, Streamer, Talker, Watcher
 from benchmarks.soak.client import Client

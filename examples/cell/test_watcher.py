@@ -4,21 +4,19 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.testing import ServedRobot, robot
 from examples.cell.watcher import Watcher
-
-__all__ = ["robot"]  # a fixture is used by its name
+from pendant_sim import Robot
 
 
 @pytest.fixture
-def watcher(robot: ServedRobot) -> Iterator[Watcher]:
+def watcher(robot: Robot) -> Iterator[Watcher]:
     """Looks after the robot of the test."""
     watcher = Watcher(robot.host)
     yield watcher
     watcher.close()
 
 
-def test_an_emergency_stop_is_noticed_and_the_robot_works_again_when_it_is_released(robot: ServedRobot, watcher: Watcher) -> None:
+def test_an_emergency_stop_is_noticed_and_the_robot_works_again_when_it_is_released(robot: Robot, watcher: Watcher) -> None:
     pressed = robot.press("emergency_stop")
     assert robot.wait_for("emergency_stop")["tick"] == pressed + 1
     assert watcher.wait_stopped(2.0)
@@ -27,7 +25,7 @@ def test_an_emergency_stop_is_noticed_and_the_robot_works_again_when_it_is_relea
     assert watcher.recover(5.0)
 
 
-def test_a_dropped_payload_is_noticed_and_unlocked_after_five_seconds(robot: ServedRobot, watcher: Watcher) -> None:
+def test_a_dropped_payload_is_noticed_and_unlocked_after_five_seconds(robot: Robot, watcher: Watcher) -> None:
     robot.begin(payload_true={"mass": 3.0}, payload_configured={"mass": 3.0}, settings={"activation.period": 0.5})
     robot.free_drive(30.0)
     robot.wait_for("entered")

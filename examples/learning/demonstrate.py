@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.api import Session, run, session
+from pendant_sim import Session, run, session
 
 COUNT = 20
 WAYS, WAY = 3, 1.8  # ways of a demonstration, one after the other, and the length of each [s]

@@ -17,10 +17,10 @@ from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.ports import DASHBOARD
 from app.robot_serving import Network
 from app.runs.runner import simulate
+from app.served_robot import free_addresses
 from app.serving import ServedArms
 from app.session.prepare import prepare
 from app.session.session_file import Setup
-from app.testing import free_addresses
 from pendant.all_settings import Settings, apply
 from sim.run.loop import Loop
 from tests.app.web.raw_client import until

@@ -8,7 +8,7 @@ import pytest
 from rtde_control import RTDEControlInterface
 from rtde_receive import RTDEReceiveInterface
 
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 from tests.app.robot_interface.waiting import HOME, until
 
 

@@ -14,7 +14,7 @@ import pytest
 from rtde_receive import RTDEReceiveInterface
 
 from app.robot_interface.controller.robot_words import VERSION
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 from tests.app.robot_interface.external_control_client import (
     CANCEL,
     CANCELED,

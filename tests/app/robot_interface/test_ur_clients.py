@@ -18,7 +18,7 @@ from universal_robots_clients import rtde_client as registers
 
 from app.robot_interface.controller.robot_words import SERIAL, VERSION
 from app.robot_interface.controller.rtde_fields import CONSTANTS
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 from tests.sim.arms import UR5E
 
 HOME = [0.0, -1.2, 1.5, -1.87, -1.57, 0.0]

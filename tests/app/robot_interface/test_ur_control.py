@@ -4,7 +4,7 @@ import numpy as np
 from rtde_control import RTDEControlInterface
 from rtde_receive import RTDEReceiveInterface
 
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 from tests.app.robot_interface.waiting import ASIDE, HOME, at, settled, until
 
 

@@ -9,7 +9,7 @@ from rtde_control import Path as WayPath
 from rtde_control import PathEntry, RTDEControlInterface
 from rtde_receive import RTDEReceiveInterface
 
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 from tests.app.robot_interface.waiting import HOME, settled, until
 
 STILL = [0.0] * 6

@@ -8,7 +8,7 @@ import numpy as np
 from rtde_control import RTDEControlInterface
 from rtde_receive import RTDEReceiveInterface
 
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 from tests.app.robot_interface.waiting import ASIDE, HOME, settled, until
 
 QUICK = {"activation.period": 0.3, "sequence.period": 0.5, "free_drive.period": 1.0, "walls.tether": False}

@@ -10,7 +10,7 @@ import pytest
 import rtde_receive
 
 from app.log_reading.reader import read
-from app.testing import ServedRobot
+from app.served_robot import ServedRobot
 
 IN_FREE_DRIVE, REFUSED = 64, 66
 TEACH_BUTTON, PROTECTIVE, SAFEGUARD, EMERGENCY, STOPPED = 1 << 2, 1 << 2, 1 << 4, 1 << 6 | 1 << 7, 1 << 10

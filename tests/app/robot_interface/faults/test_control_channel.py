@@ -17,8 +17,8 @@ from app.log.live import LiveRecording
 from app.robot_interface.faults import control_channel, timed_http
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.ports import CONTROL
+from app.served_robot import free_addresses
 from app.session.session_file import SHIPPED_ALONE, AllowedFiles, Setup, located
-from app.testing import free_addresses
 from pendant.all_settings import Settings
 from sim.arm.scenario import Scenario
 from sim.run.loop import Loop

@@ -4,9 +4,7 @@ import socket
 
 import pytest
 
-from app.testing import ServedRobot, robot
-
-__all__ = ["robot"]
+from app.served_robot import ServedRobot
 
 SETUP = {
     "tool": "two-finger",

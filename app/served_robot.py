@@ -1,13 +1,4 @@
-"""A robot for tests: `from app.testing import robot` gives a pytest fixture that starts one, injects faults, and stops it.
-
-from app.testing import robot
-
-def test_the_cell_stops(robot):
-    my_cell = MyCell(robot.host)
-    robot.do({"do": "tap", "at": 0.0, "control": "emergency_stop"})
-    robot.wait_for("emergency_stop")
-    assert my_cell.stopped
-"""
+"""A robot in a process of its own, for tests and for clients: it starts, injects faults, gives back events, and stops."""
 
 import atexit
 import itertools
@@ -22,13 +13,10 @@ import urllib.error
 import urllib.request
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
-
-import pytest
+from types import TracebackType
+from typing import Any, Self
 
 from app.robot_interface.ports import CONTROL, PORTS
-
-__all__ = ["ServedRobot", "robot"]
 
 PATIENCE = 60.0
 """Time in which a robot must answer [s]."""
@@ -87,6 +75,13 @@ class ServedRobot:
         if self._pid:
             _NURSERY.order(stop=self._pid)
             self._pid = 0
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.stop()
 
     def do(self, *actions: Mapping[str, Json]) -> int:
         """Play actions as a session's time line has them; returns the tick from which `at` counts: 0.0 acts in the next."""
@@ -271,14 +266,3 @@ def free_addresses() -> Iterator[str]:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind((host, PORTS[CONTROL]))
         yield host
-
-
-@pytest.fixture
-def robot(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[ServedRobot]:
-    """A robot of one test. `@pytest.mark.parametrize("robot", [{"payload_true": ...}], indirect=True)` gives it a set-up."""
-    served = ServedRobot(tmp_path, getattr(request, "param", None))
-    served.start()
-    try:
-        yield served
-    finally:
-        served.stop()

@@ -1,6 +1,7 @@
 """The command `pendant` from its first moment on: until there is something to finish, Ctrl-C and SIGTERM end it at once."""
 
 import signal
+import sys
 
 for number in (signal.SIGINT, signal.SIGTERM):  # what Python does by itself prints where it was
     signal.signal(number, signal.SIG_DFL)
@@ -8,6 +9,11 @@ for number in (signal.SIGINT, signal.SIGTERM):  # what Python does by itself pri
 
 def main() -> None:
     """Entry point."""
+    from pendant_sim.ours import hidden
+
+    trouble = hidden()
+    if trouble is not None:
+        sys.exit(f"pendant: {trouble}")
     from app import cli
 
     cli.main()
