@@ -48,8 +48,17 @@ def get_ready() -> None:
         notice.cancel()
 
 
-def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording: LiveRecording) -> RobotInterfaces:
+def open_interfaces(
+    loop: Loop, prepared: Prepared, network: Network, recording: LiveRecording, token: str | None = None
+) -> RobotInterfaces:
     """Open the network interfaces of a loop that has not been started yet.
+
+    Args:
+        loop: that runs, or will.
+        prepared: what it simulates.
+        network: where they are to be.
+        recording: the switch of recordings.
+        token: of the control channel; None: that of the environment, or a new one.
 
     Raises:
         BadInput: the address cannot be used, a port is taken, or the arm cannot be told by these protocols.
@@ -60,7 +69,7 @@ def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording:
         host=access_through(network.host).host,
         offset=network.offset,
         programs=network.programs,
-        token=os.environ.get(TOKEN),
+        token=token or os.environ.get(TOKEN),
         recording=recording,
         files=network.files,
     )

@@ -141,6 +141,7 @@ class ServedArms:
     ) -> None:
         self._loop, self._recording, self._network, self._folder = loop, recording, network, folder
         self._interfaces: RobotInterfaces | None = None
+        self._token: str | None = None  # of the control channel: who was told it keeps it, whichever arm is brought
         self._beside: ScriptRunner | None = None  # runs programs without a network
 
     @property
@@ -150,9 +151,9 @@ class ServedArms:
 
     def open(self, prepared: Prepared) -> RobotInterfaces | None:
         """Open the network interfaces, where they are wanted. Raises BadInput as `open_interfaces`."""
-        self._interfaces = (
-            None if self._network is None else open_interfaces(self._loop, prepared, self._network, self._recording)
-        )
+        if self._network is not None:
+            self._interfaces = open_interfaces(self._loop, prepared, self._network, self._recording, self._token)
+            self._token = self._interfaces.token
         return self._interfaces
 
     def scripts(self, arm: Arm) -> ScriptRunner | None:

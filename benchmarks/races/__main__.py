@@ -13,6 +13,7 @@ import threading
 import time
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.error import HTTPError
 
 from websockets.exceptions import ConnectionClosed
 
@@ -103,8 +104,17 @@ def race(seed: int, seconds: float, folder: Path, *, defect: bool = False) -> Se
             broken: dict[str, str] = {}
             failures: list[str] = []
             found = float("inf")
+            answered = time.monotonic()
             while (now := time.monotonic()) < end:
-                state = robot.ask("state")
+                try:
+                    state = robot.ask("state")
+                except OSError as error:  # while another arm is brought, nobody answers
+                    if isinstance(error, HTTPError) or now > answered + STILL:
+                        app.kill()
+                        raise
+                    time.sleep(LOOK)
+                    continue
+                answered = now
                 broken |= state["broken"]
                 failures += [state[name] for name in ("failure", "recording_failure") if state[name]]
                 if (broken or failures or page.told) and found == float("inf"):

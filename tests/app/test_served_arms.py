@@ -61,6 +61,7 @@ def test_another_arm_runs_and_answers_at_the_same_ports(loop: Loop, tmp_path: Pa
         held.close()
         assert brought.interfaces is not None
         assert brought.interfaces is not first
+        assert brought.interfaces.token == first.token, "who controls the channel still may"
         assert "UR10" in asked(brought.interfaces, "get robot model")
         assert "file of its own" in brought.said
         assert "can come again" in brought.said
