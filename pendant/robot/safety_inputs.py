@@ -133,7 +133,7 @@ class SafetyInputs:
             if self._limits.reduced:
                 speeds = self._limits.reduced_limits(limits).speeds
                 cause = "the input" if self._input else f"area {self._beyond}"
-                values: Values = {"cause": cause, "tcp": speeds.tcp, "elbow": speeds.elbow, "joint_speed": speeds.joint}
+                values: Values = {"cause": cause, "tcp": speeds.tcp, "elbow": speeds.elbow, "joint_speed": max(speeds.joints)}
                 events.append(Event(Kind.REDUCED_ON, tick, values))
             else:
                 events.append(Event(Kind.REDUCED_OFF, tick))
