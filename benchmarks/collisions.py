@@ -6,7 +6,6 @@ where it should be. Truth is read for scoring alone. The second part is motion w
 """
 
 from itertools import pairwise
-from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -16,6 +15,7 @@ from app.files.library import load_arm
 from app.runs.network_run import NetworkRun
 from app.session.actions import SendScript
 from app.session.session_file import Session
+from benchmarks.blocking.hit_forces import HitForces, draw
 from benchmarks.blocking.motions import Case, Moves, Wanted
 from benchmarks.blocking.places import box_across, tip
 from benchmarks.common import Report, main, spread
@@ -90,16 +90,23 @@ class Result(NamedTuple):
 
 def measure_strike(strike: Strike) -> Result | None:
     """Both runs; None where the arm met nothing in any of some postures."""
-    for attempt in range(TRIES):
-        try:
-            seen = Trial(strike._replace(seed=strike.seed + SPACED * attempt), {}).run()
-        except ValueError:  # it would begin inside of what it is to meet
-            continue
-        if seen is not None:
-            twin = Trial(strike._replace(seed=strike.seed + SPACED * attempt), OFF).run()
+    for drawn in _drawn(strike):
+        if (seen := _course(drawn)) is not None:
+            twin = Trial(drawn, OFF).run()
             assert twin is not None
             return Result(strike, seen, twin)
     return None
+
+
+def _drawn(strike: Strike) -> list[Strike]:
+    return [strike._replace(seed=strike.seed + SPACED * attempt) for attempt in range(TRIES)]
+
+
+def _course(strike: Strike) -> Course | None:
+    try:
+        return Trial(strike, {}).run()
+    except ValueError:  # it would begin inside of what it is to meet
+        return None
 
 
 class Reaching(Wanted):
@@ -283,7 +290,7 @@ def measure(report: Report) -> None:
     found = spread(measure_strike, strikes(base + 6200, round(1.3 * wanted)))
     results = [result for result in found if result is not None][:wanted]
     limit = Settings().collision.clamping
-    hard = [r for r in results if max(r.twin.peak, r.twin.later) > OVER * limit or r.twin.kept > KEPT]
+    hard = [r for r in results if _most(r.twin) > OVER * limit or r.twin.kept > KEPT]
     stopped = [r for r in hard if r.seen.stopped]
     named = [r for r in stopped if r.seen.stopped != "path"]
     report.row("strikes that met something", len(results), n=len(found))
@@ -300,7 +307,8 @@ def measure(report: Report) -> None:
         report.row("first peak, of the twin's, median", float(np.median([r.seen.peak / max(r.twin.peak, 1.0) for r in named])))
     _table(report, hard)
     report.options.out.mkdir(parents=True, exist_ok=True)
-    draw(hard, report.options.out / f"collisions-{base}.webp")
+    forces = [HitForces(r.strike.speed, r.strike.stiffness, _most(r.seen), _most(r.twin)) for r in hard if r.seen.stopped]
+    draw(forces, STIFFNESS_EDGES, report.options.out / f"collisions-{base}.webp")
     for part in get_args(Part):
         some = [r for r in hard if r.strike.part == part]
         report.share(f"{part}: stopped", sum(bool(r.seen.stopped) for r in some), len(some))
@@ -311,39 +319,24 @@ def measure(report: Report) -> None:
 
 
 def _table(report: Report, hard: list[Result]) -> None:
-    """Medians of delay and force by speed and stiffness; a cell without a hit is left out."""
+    """Medians by speed and stiffness; a cell without a hit is left out."""
     for low, high in pairwise(SPEED_EDGES):
         for soft, stiff in pairwise(STIFFNESS_EDGES):
             some = [r for r in hard if low <= r.strike.speed < high and _cell(r, soft, stiff)]
             if some:
                 cell = f"{1e3 * low:.0f} to {1e3 * high:.0f} mm/s on {soft:g} to {stiff:g} N/m"
                 report.row(f"{cell}: touch to stop", 1e3 * float(np.median([r.seen.delay for r in some])), "ms", n=len(some))
-                peaks = [(max(r.seen.peak, r.seen.later), max(r.twin.peak, r.twin.later)) for r in some]
+                peaks = [(_most(r.seen), _most(r.twin)) for r in some]
                 for name, k in (("largest force", 0), ("largest force without the stop", 1)):
                     report.row(f"{cell}: {name}", float(np.median([each[k] for each in peaks])), "N", n=len(some))
 
 
+def _most(course: Course) -> float:
+    return max(course.peak, course.later)
+
+
 def _cell(r: Result, soft: float, stiff: float) -> bool:
     return bool(r.seen.stopped) and soft <= r.strike.stiffness < stiff
-
-
-def draw(hard: list[Result], path: Path) -> None:
-    """Write the picture: the largest force of each hit over its speed, with the protective stop and without it."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8.0, 3.6), layout="constrained")
-    for axes, title, of in zip(
-        figure.subplots(1, 2, sharey=True), ("with the protective stop", "without it"), (0, 1), strict=True
-    ):
-        for soft, stiff in pairwise(STIFFNESS_EDGES):
-            some = [r for r in hard if _cell(r, soft, stiff)]
-            forces = [max(course.peak, course.later) for course in ((r.seen, r.twin)[of] for r in some)]
-            axes.plot([1e3 * r.strike.speed for r in some], forces, ".", label=f"{soft:g} to {stiff:g} N/m")
-        axes.set(xscale="log", yscale="log", xlabel="speed at the touch [mm/s]", title=title)
-        axes.grid(visible=True, which="both", alpha=0.2)
-    figure.axes[0].set_ylabel("largest force [N]")
-    figure.axes[1].legend(loc="lower right", fontsize=8)
-    figure.savefig(path, dpi=110, pil_kwargs={"quality": 80})
 
 
 def _quiet(report: Report, base: int) -> None:
@@ -364,19 +357,21 @@ def _quiet(report: Report, base: int) -> None:
 
 def _right(r: Result) -> bool:
     """The stop names the part that touched, whichever was there first: a wrist is wider than what it hangs on."""
-    return _touched(r) in r.seen.stopped.split(" or ")
+    told = r.seen.stopped.split(" or ")
+    return any(part in told for part in _touched(r))
 
 
-def _touched(r: Result) -> str:
-    """The part whose shape touched. At the elbow upper arm and forearm meet: either is the elbow where that was to touch."""
+def _touched(r: Result) -> tuple[str, ...]:
+    """The part whose shape touched. At the elbow upper arm and forearm meet: the forearm is the elbow, too, where that was to
+    touch."""
     number = r.seen.shape.removeprefix("shape/")
     if number == "tool":
-        return "tool"
+        return ("tool",)
     arm = load_arm(r.strike.arm)
     beyond = arm.shapes[int(number)].link - arm.chain.elbow
-    if beyond > 0:
-        return "wrist"
-    return "forearm" if beyond == 0 and r.strike.part != "elbow" else "elbow"
+    if beyond:
+        return ("wrist",) if beyond > 0 else ("elbow",)
+    return ("forearm", "elbow") if r.strike.part == "elbow" else ("forearm",)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ from pendant.walls.containment import Containment
 KEPT = 0.85
 """Share of the speeds that stop the wizard which it keeps within: what the measurement adds, and swinging, stays below them."""
 
-SLOW = SpeedLimits(KEPT * SLOW_TOOL, KEPT * SLOW_ELBOW, KEPT * SLOW_JOINT)
+SLOW = KEPT * SLOW_TOOL, KEPT * SLOW_ELBOW, KEPT * SLOW_JOINT  # of tool and elbow [m/s], and of a joint [rad/s]
 
 GENTLE = 0.1
 """Share of a joint's acceleration with which the wrist is turned."""
@@ -92,7 +92,11 @@ class Equipping:
         """What the control law keeps the arm within: what it usually does, and less while the wizard moves it."""
         if not self.moving:
             return usual
-        return SLOW if usual is None else SpeedLimits(*map(min, SLOW, usual))
+        tool, elbow, joint = SLOW
+        if usual is None:
+            return SpeedLimits(tool, elbow, (joint,) * self._begin.size)
+        joints = tuple([min(joint, most) for most in usual.joints])
+        return usual._replace(tcp=min(tool, usual.tcp), elbow=min(elbow, usual.elbow), joints=joints)
 
     def step(
         self,

@@ -105,7 +105,7 @@ class Supervisor:
         self._free = FreeDrive(self._joints, rated, self.containment, zones, sensor=sensor)
         self._robot = Robot(self._free, self._sequencer)
         rating = ArmRating(self._joints, ranges or endless, speeds or endless)
-        self._safety = SafetyInputs(self._robot, rating, shape.elbow if shape else n_joints // 2 - 1)
+        self._safety = SafetyInputs(self._robot, rating)
         self._run = ProgramRun(self._robot, self._mean, n_joints, self.containment)
         self._tooling = Tooling(equipment or Equipment())
         self._equipping = Equipping(

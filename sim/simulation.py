@@ -114,8 +114,7 @@ class Simulation:
         self.watch = ArmWatch(
             self.dynamics,
             self.estimator.momentum,
-            arm.sensors,
-            arm.chain.elbow,
+            arm,
             meter=self.controller.references.meter,
             following=following_limit(arm),
         )

@@ -44,8 +44,9 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     walls: Walls = []  # virtual walls and areas, beside the tether (docs/guide/walls.md)
 
 
-FIRST_START = Setup(world="table")
-"""What the page begins with where nothing else is said or kept: something to touch stands in front of the arm."""
+FIRST_START = Setup(world="table", self_contact=True)
+"""What the page begins with where nothing else is said or kept: something to touch stands in front of the arm, which touches
+itself, too."""
 
 
 class Session(Setup, frozen=True, kw_only=True):

@@ -65,7 +65,7 @@ class Draw:
         if start == "moving" or kind == "stop":
             first, after = self._before(arm, q), int(rng.integers(1, 400))
         share = float(rng.uniform(0.05, 1.0)) if rng.random() < 0.1 else 1.0
-        limits = SpeedLimits(0.25, 0.25, 1.0) if rng.random() < 0.1 else None
+        limits = SpeedLimits(0.25, 0.25, (1.0,) * 6) if rng.random() < 0.1 else None
         return Drawn(
             name, kind, start, q, tcp, R_FT, first, after, self._moves(arm, kind, q, (tcp, R_FT)), share, limits, rng.random()
         )

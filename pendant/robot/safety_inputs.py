@@ -21,16 +21,15 @@ class SafetyInputs:
 
     __slots__ = ("_beyond", "_blind", "_collisions", "_input", "_joints", "_limits", "_robot", "_safeguard")
 
-    def __init__(self, robot: Robot, rating: ArmRating, elbow: int) -> None:
+    def __init__(self, robot: Robot, rating: ArmRating) -> None:
         """
         Args:
             robot: that they act on.
             rating: what its joints are made for; their names are used in events.
-            elbow: index of the joint whose origin is the elbow.
         """
         self._robot, self._joints = robot, rating.names
         self._limits = LimitWatch(rating)
-        self._collisions = Collisions(rating.names, elbow)
+        self._collisions = Collisions(rating.names)
         self._safeguard = False  # it is open
         self._input = False  # level of the input of REDUCED
         self._beyond = ""  # name of the area beyond which REDUCED holds
@@ -134,7 +133,7 @@ class SafetyInputs:
             if self._limits.reduced:
                 speeds = self._limits.reduced_limits(limits).speeds
                 cause = "the input" if self._input else f"area {self._beyond}"
-                values: Values = {"cause": cause, "tcp": speeds.tcp, "elbow": speeds.elbow, "joint_speed": speeds.joint}
+                values: Values = {"cause": cause, "tcp": speeds.tcp, "elbow": speeds.elbow, "joint_speed": max(speeds.joints)}
                 events.append(Event(Kind.REDUCED_ON, tick, values))
             else:
                 events.append(Event(Kind.REDUCED_OFF, tick))

@@ -31,13 +31,12 @@ class Collisions:
 
     Args:
         joints: their names, base to flange.
-        elbow: index of the joint whose origin is the elbow.
     """
 
-    __slots__ = ("_allowed", "_elbow", "_joints", "_speeds")
+    __slots__ = ("_allowed", "_joints", "_speeds")
 
-    def __init__(self, joints: tuple[str, ...], elbow: int) -> None:
-        self._joints, self._elbow = joints, elbow
+    def __init__(self, joints: tuple[str, ...]) -> None:
+        self._joints = joints
         self._allowed = [inf, inf]  # of tool and link [N]
         self._speeds: deque[tuple[float, float]] = deque(maxlen=BEFORE)  # of tool and elbow, the last ones [m/s]
 
@@ -77,7 +76,7 @@ class Collisions:
 
     def _met(self, estimate: Estimate, k: int, force: float) -> Values:
         """What the arm meets with its tool, 0, or a link, 1: `pendant.safety.rows.MET`."""
-        part = "tool" if k == 0 else self._part(estimate.link_force.joint, sensed=estimate.wrench_valid)
+        part = "tool" if k == 0 else _part(estimate.link_force.parts, sensed=estimate.wrench_valid)
         tool, elbow = (max(each) for each in zip(*self._speeds, (estimate.v_tcp, estimate.v_elbow), strict=True))
         x, y, z = estimate.tcp.tolist()[:3]
         return {
@@ -90,16 +89,20 @@ class Collisions:
             "posture": posture_text(estimate.q.tolist()),
         }
 
-    def _part(self, joint: int, *, sensed: bool) -> str:
-        """Name of the link that this joint, the last that feels the force, moves."""
-        if joint == 0:  # alone: of a force across the plane in which the joints up to the wrist lie they feel nothing
-            return "elbow or forearm"
-        if joint < self._elbow:
-            return "elbow"
-        if joint == self._elbow:
-            return "forearm"
-        return "wrist" if sensed else "wrist or tool"
 
+def _part(odds: tuple[float, float, float], *, sensed: bool) -> str:
+    """Name of the part that a link's force is on, or of the two that are the most probable where neither is sure."""
+    if not any(odds):
+        return "arm"
+    likely = sorted(range(len(PARTS)), key=lambda k: -odds[k])
+    told = sorted(likely[: 1 if odds[likely[0]] >= SURE else 2])
+    return " or ".join("wrist or tool" if PARTS[k] == "wrist" and not sensed else PARTS[k] for k in told)
+
+
+PARTS = "elbow", "forearm", "wrist"
+"""Of the probabilities in `LinkForce.parts`."""
+SURE = 0.9
+"""Probability from which one part is told alone; below it the next one is told as well."""
 
 OF_THE_ELBOW = ("elbow", "forearm", "elbow or forearm")
 """Parts whose speed is told as that of the elbow."""

@@ -11,7 +11,7 @@ from math import degrees, inf, radians
 from typing import NamedTuple
 
 from pendant.events.event import Event, Kind, Values
-from pendant.safety.settings import FURTHEST, JointPositions, RobotLimitSettings
+from pendant.safety.settings import FASTEST, FURTHEST, JointPositions, JointSpeeds, RobotLimitSettings
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.limit_engine import Excess
@@ -38,7 +38,7 @@ class SpeedLimits(NamedTuple):
 
     tcp: float  # [m/s]
     elbow: float  # [m/s]
-    joint: float  # [rad/s]
+    joints: tuple[float, ...]  # of each joint, n [rad/s]
     momentum: float = inf  # [kg·m/s]
     stopping_time: float = inf  # [s]
     stopping_distance: float = inf  # of tool or elbow [m]
@@ -56,7 +56,7 @@ class RobotLimits(NamedTuple):
 
     mode: Safety
     speeds: SpeedLimits
-    joint_speeds: tuple[float, ...]  # of each joint [rad/s]
+    joint_speeds: tuple[float, ...]  # of each joint, from which it is stopped [rad/s]
     power: float  # [W]
     forces: tuple[float, float]  # of tool and link [N]
     joint_range: JointRange | None  # None: the arm's own
@@ -85,7 +85,7 @@ def robot_limits(settings: RobotLimitSettings, arm: ArmRating, *, reduced: bool)
     speeds = SpeedLimits(
         min(least("tool_speed"), power / tool_force),
         least("elbow_speed"),
-        least("joint_speed"),
+        _speeds([each.joint_speeds for each in sets], len(arm.speeds)),
         least("momentum"),
         least("stopping_time"),
         least("stopping_distance"),
@@ -93,11 +93,21 @@ def robot_limits(settings: RobotLimitSettings, arm: ArmRating, *, reduced: bool)
     return RobotLimits(
         Safety.REDUCED if reduced else Safety.NORMAL,
         speeds,
-        tuple([min(speeds.joint + JOINT_SPEED_TOLERANCE, rated + ABOVE_RATED) for rated in arm.speeds]),
+        tuple(
+            [
+                min(most + JOINT_SPEED_TOLERANCE, rated + ABOVE_RATED)
+                for most, rated in zip(speeds.joints, arm.speeds, strict=True)
+            ]
+        ),
         power,
         (tool_force, least("elbow_force")),
         _range([each.positions for each in sets], arm.ranges),
     )
+
+
+def _speeds(sets: list[JointSpeeds], n: int) -> tuple[float, ...]:
+    """What each of n joints may have [rad/s]."""
+    return tuple([min(getattr(each, f"j{k + 1}", FASTEST) for each in sets) for k in range(n)])
 
 
 def _range(positions: list[JointPositions], ranges: tuple[float, ...]) -> JointRange | None:

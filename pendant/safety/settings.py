@@ -41,7 +41,6 @@ class CollisionSettings(Section, frozen=True, forbid_unknown_fields=True, kw_onl
 
 Speed = Annotated[float, _number(0.05, 5.0, "m/s", "RL-4", text="largest speed of the tool centre point")]
 ElbowSpeed = Annotated[float, _number(0.05, 5.0, "m/s", "RL-4", text="largest speed of the elbow")]
-JointSpeed = Annotated[float, _number(0.1, 6.4832, "rad/s", "RL-4", text="largest speed of a joint")]
 ToolForce = Annotated[float, _number(50.0, 250.0, "N", "RL-3", text="largest force of the tool on what it meets")]
 ElbowForce = Annotated[float, _number(50.0, 250.0, "N", "RL-3", text="largest force of a link on what it meets")]
 Momentum = Annotated[float, _number(1.0, 100.0, "kg·m/s", "RL-4", text="largest momentum of the moving arm with its payload")]
@@ -50,12 +49,29 @@ StoppingTime = Annotated[float, _number(0.1, 2.0, "s", "RL-4", text="longest tim
 StoppingDistance = Annotated[
     float, _number(0.02, 3.0, "m", "RL-4", text="longest way of tool or elbow on which a moving arm comes to rest")
 ]
+FASTEST = 6.4832
+"""Of a joint [rad/s], 371.5°/s: 0.2 more than the fastest joints of the maker's arms are made for."""
 FURTHEST = 6.3358
 """Of a joint either way [rad], 363°: the maker's default."""
 
 
+def _speed(joint: int) -> Meta:
+    return _number(0.1, FASTEST, "rad/s", "RL-4", text=f"largest speed of joint {joint}, counted from the base")
+
+
 def _angle(joint: int, end: str) -> Meta:
     return _number(-FURTHEST, FURTHEST, "rad", "RL-6", text=f"{end} angle of joint {joint}, counted from the base")
+
+
+class JointSpeeds(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How fast each joint may be. One that is made for less is stopped where `pendant.safety.robot_limits.ABOVE_RATED` says."""
+
+    j1: Annotated[float, _speed(1)] = FASTEST
+    j2: Annotated[float, _speed(2)] = FASTEST
+    j3: Annotated[float, _speed(3)] = FASTEST
+    j4: Annotated[float, _speed(4)] = FASTEST
+    j5: Annotated[float, _speed(5)] = FASTEST
+    j6: Annotated[float, _speed(6)] = FASTEST
 
 
 class JointPositions(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -84,13 +100,13 @@ class ModeLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
 
     tool_speed: Speed = 1.5
     elbow_speed: ElbowSpeed = 1.5
-    joint_speed: JointSpeed = 6.4832
     tool_force: ToolForce = 150.0
     elbow_force: ElbowForce = 150.0
     momentum: Momentum = 25.0
     power: Power = 300.0
     stopping_time: StoppingTime = 0.4
     stopping_distance: StoppingDistance = 0.5
+    joint_speeds: JointSpeeds = JointSpeeds()
     positions: JointPositions = JointPositions()
 
 

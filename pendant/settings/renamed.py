@@ -29,7 +29,9 @@ RENAMED = {
     "reduced.on": "robot_limits.on",
     "reduced.tcp_speed": "robot_limits.reduced.tool_speed",
     "reduced.elbow_speed": "robot_limits.reduced.elbow_speed",
-    "reduced.joint_speed": "robot_limits.reduced.joint_speed",
+    "reduced.joint_speed": "robot_limits.reduced.joint_speeds.j1",
+    "robot_limits.normal.joint_speed": "robot_limits.normal.joint_speeds.j1",
+    "robot_limits.reduced.joint_speed": "robot_limits.reduced.joint_speeds.j1",
     "reduced.transition": "robot_limits.transition",
 }
 """Old name -> name of now."""

@@ -47,6 +47,7 @@ class LinkForce(NamedTuple):
     force: float = 0.0  # [N]
     torque: float = 0.0  # of the joint that needs this force [N·m]
     twisted: int = 0  # that joint
+    parts: tuple[float, float, float] = (0.0, 0.0, 0.0)  # probability that it meets elbow, forearm, wrist; none: nothing is known
 
 
 NO_LINK_FORCE = LinkForce()

@@ -54,7 +54,8 @@ class MotionMeter:
             least=(n,),
             shortest=(),
             reaction=(),
-            limits=(len(SpeedLimits._fields),),
+            limits=(len(SpeedLimits._fields) - 1,),  # but those of the joints
+            joints=(n,),
             # Of the posture that is looked at: joints and flange in B, and of each link P, L about its joint, mass times centre.
             origins=(n + 1, 3),
             turns=(n + 1, 3, 3),
@@ -65,14 +66,16 @@ class MotionMeter:
         own = self.record[0]
         own["rotor"], own["torque"], own["least"] = braking.rotor, braking.torque, braking.least
         own["shortest"], own["reaction"] = braking.shortest, braking.reaction
-        self._bounds = own["limits"]
+        self._bounds, self._joints = own["limits"], own["joints"]
         self._limits: SpeedLimits | None = None
 
     def over(self, q: Array, qd: Array, limits: SpeedLimits) -> float:
         """By what speeds (n,) must be divided at angles (n,) so that all limits hold; 1 or less where they do."""
         if limits is not self._limits:
             self._limits = limits
-            self._bounds[:] = limits
+            tool, elbow, joints, *others = limits
+            self._bounds[:] = tool, elbow, *others
+            self._joints[:] = joints or math.inf
         return _over(self.record, self._rigid, (q, qd), self._tcp)
 
 
@@ -102,13 +105,13 @@ def _over(record, rigid, motion, tcp):
     limits, (q, qd) = own.limits, motion
     tool, elbow = _placed(own, model, motion, tcp)
     momentum, seconds = _momentum(own, model, (own.origins, own.turns), qd)
-    over = max(tool / limits[0], elbow / limits[1], momentum / limits[3], seconds / (limits[4] - own.reaction))
+    over = max(tool / limits[0], elbow / limits[1], momentum / limits[2], seconds / (limits[3] - own.reaction))
     for i in range(q.size):
-        over = max(over, abs(qd[i]) / limits[2])
+        over = max(over, abs(qd[i]) / own.joints[i])
     fastest = max(tool, elbow)
-    if fastest * (0.5 * max(seconds, own.shortest) + own.reaction) > limits[5]:
+    if fastest * (0.5 * max(seconds, own.shortest) + own.reaction) > limits[4]:
         # s v (s T / 2 + r) = d where that stop is not the shortest one, else s v (T_0 / 2 + r) = d.
-        way, r = limits[5] / fastest, own.reaction
+        way, r = limits[4] / fastest, own.reaction
         share = way / (0.5 * own.shortest + r)
         if share * seconds > own.shortest:
             share = (math.sqrt(r * r + 2.0 * seconds * way) - r) / seconds

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.estimate import NO_LINK_FORCE, ON_PATH, Estimate, FollowingError, LinkForce, MotionMeasures
-from sim.arm.arm_file import SensorNumbers
+from sim.arm.arm_file import Arm
 from sim.braking.motion_meter import MotionMeter, measure
+from sim.collisions.hit_parts import hit_parts, hit_shapes
 from sim.collisions.link_force import link_force
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
@@ -30,8 +31,7 @@ class ArmWatch:
     Args:
         dynamics: the controller's rigid model, whose recursion has been run in this tick.
         momentum: external torques of this tick.
-        sensors: of the arm, with their ranges.
-        elbow: index of the joint whose origin is the elbow.
+        arm: its sensors with their ranges, and its shapes.
         meter: of the arm's motion.
         following: largest error of the joints against their reference (n,) [rad].
     """
@@ -40,16 +40,16 @@ class ArmWatch:
         self,
         dynamics: Dynamics,
         momentum: MomentumObserver,
-        sensors: SensorNumbers,
-        elbow: int,
+        arm: Arm,
         *,
         meter: MotionMeter,
         following: Array,
     ) -> None:
-        self._momentum, self._elbow = momentum, elbow
+        self._momentum, self._elbow = momentum, arm.chain.elbow
         self._own = record(range=(6,), zero=(6,), following=(following.size,))
         self._models = self._own, meter.record, dynamics.recursion.record, momentum.record, momentum.errors.record
-        own, flange = self._own[0], sensors.force_torque
+        self._shapes = hit_shapes(arm)
+        own, flange = self._own[0], arm.sensors.force_torque
         own["range"], own["following"] = np.inf, following
         if flange is not None:
             own["range"][:3], own["range"][3:] = END * flange.force.range, END * flange.torque.range
@@ -70,26 +70,28 @@ class ArmWatch:
         """
         feels, q = self._momentum.ready and not free, estimate.q
         felt = (sample.wrench, estimate.F_user, q, q if wanted is None else wanted, estimate.qd)
-        force, clipped, error, motion = _watch(self._models, (self._elbow, feels), felt)
+        force, parts, clipped, error, motion = _watch(self._models, self._shapes, (self._elbow, feels), felt)
         estimate.clipped = clipped and sample.wrench_valid
-        estimate.link_force = NO_LINK_FORCE if force[0] < 0 else LinkForce(*force)
+        estimate.link_force = NO_LINK_FORCE if force[0] < 0 else LinkForce(*force, parts=parts)
         estimate.following = ON_PATH if wanted is None else FollowingError(*error)
         estimate.motion = MotionMeasures(*motion)
 
 
 @kernel
-def _watch(models, state, felt):
-    """Force on a link, whether the flange sensor is at the end of its range, the following error, and the motion."""
+def _watch(models, shapes, state, felt):
+    """Force on a link and its parts, whether the flange sensor is at the end of its range, following error, and motion."""
     elbow, feels = state
     sensed, outside, q, wanted, qd = felt
     own, rigid = models[0][0], models[2][0]
-    force, clipped = (-1, 0.0, 0.0, 0), False
+    force, parts, clipped = (-1, 0.0, 0.0, 0), (0.0, 0.0, 0.0), False
     if feels:
         force = link_force(models[2:], elbow)
+        if force[0] >= 0:
+            parts = hit_parts(models[2:], shapes, force[1])
         for k in range(6):
             clipped |= abs(sensed[k] + own.zero[k]) >= own.range[k]
     error = _following_error(own.following, wanted, q, (rigid.jacobian, rigid.p, rigid.tcp))
-    return force, clipped, error, measure(models[1], models[2], qd, outside)
+    return force, parts, clipped, error, measure(models[1], models[2], qd, outside)
 
 
 @kernel

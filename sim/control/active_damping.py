@@ -65,13 +65,14 @@ class ActiveDamping:
             rated=(n,),
             rotor=(n,),
             elbow="i8",
-            how=(6,),  # what is asked: limits of tcp, elbow, joints; onset, force, torque
-            limits=(3,),  # of tcp, elbow, joints, as they have fallen
+            how=(3,),  # what is asked: onset, force, torque
+            asked=(2 + n,),  # limits of tcp, elbow and each joint
+            limits=(2 + n,),  # the same, as they have fallen
         )
         own = self._record[0]
         own["rated"], own["rotor"], own["elbow"], own["limits"] = rated, rotor, elbow, math.inf
         self._asked: tuple[Damping | None, SpeedLimits | None] = (None, None)
-        self._how, self._limits = own["how"], own["limits"]
+        self._how, self._wanted, self._limits = own["how"], own["asked"], own["limits"]
         self.help = 1.0
 
     def start(self) -> None:
@@ -90,9 +91,12 @@ class ActiveDamping:
         """
         if damping is not self._asked[0] or limits is not self._asked[1]:
             self._asked = (damping, limits)
-            self._how[:] = damping
+            tcp, elbow, joint, *self._how[:] = damping
+            wanted = self._wanted
+            wanted[:2], wanted[2:] = (tcp, elbow), joint
             if limits is not None:
-                self._how[:3] = np.minimum(self._how[:3], limits[:3])
+                wanted[:2] = np.minimum(wanted[:2], limits[:2])
+                wanted[2:] = np.minimum(wanted[2:], limits.joints)
         moving = (estimate.theta_d, jacobian, estimate.p_BF, estimate.tcp, estimate.elbow)
         near = _resist(self._record, moving, torque)
         self.help += TICK / FADE * (1.0 - near - self.help)
@@ -103,15 +107,15 @@ def _resist(damping, moving, torque) -> float:
     """How near the speed is to a limit: 0 at its onset, 1 at it."""
     moving = ArmMotion(*moving)
     own, speed = damping[0], moving.speed
-    how, limits, rated, rotor = own.how, own.limits, own.rated, own.rotor
-    onset, share = how[3], how[5]
-    for k in range(3):
-        falling = limits[k] + TICK / FALL * (how[k] - limits[k])
-        limits[k] = how[k] if math.isinf(limits[k]) or how[k] >= limits[k] else falling
+    asked, limits, rated, rotor = own.asked, own.limits, own.rated, own.rotor
+    onset, share = own.how[0], own.how[2]
+    for k in range(limits.size):
+        falling = limits[k] + TICK / FALL * (asked[k] - limits[k])
+        limits[k] = asked[k] if math.isinf(limits[k]) or asked[k] >= limits[k] else falling
     near = 0.0
-    width = (1.0 - onset) * limits[2]
     for i in range(speed.size):
-        over = abs(speed[i]) - onset * limits[2]
+        width = (1.0 - onset) * limits[2 + i]
+        over = abs(speed[i]) - onset * limits[2 + i]
         if over > 0.0:
             torque[i] -= math.copysign(min(share * rated[i] / width, STEEPEST_JOINT * rotor[i]) * over, speed[i])
             near = max(near, over / width)
@@ -125,7 +129,7 @@ def _resist_at(own, arm, point, torque) -> float:
     """A point is damped along its motion. Returns how near it is to its limit."""
     p, moving, limit, steepest = point
     speed, jacobian, p_BF, rotor = arm.speed, arm.jacobian, arm.p_BF, own.rotor
-    onset, force = own.how[3], own.how[4]
+    onset, force = own.how[0], own.how[1]
     x, y, z = p[0] - p_BF[0], p[1] - p_BF[1], p[2] - p_BF[2]
     columns = np.empty((3, moving))
     vx, vy, vz = 0.0, 0.0, 0.0

@@ -49,7 +49,7 @@ def at_manual_speed(move: Move | None, limits: SpeedLimits | None) -> SpeedLimit
 def _slower(limits: SpeedLimits | None, speed: float) -> SpeedLimits:
     """The limits, and a speed for tool and elbow [m/s]."""
     if limits is None:
-        return SpeedLimits(speed, speed, math.inf)
+        return SpeedLimits(speed, speed, ())
     return limits._replace(tcp=min(speed, limits.tcp), elbow=min(speed, limits.elbow))
 
 

@@ -116,7 +116,6 @@ EXPECTED = {
     "robot_limits.transition": (0.5, 0.1, 1.0, "s", "RL-4", True),
     "robot_limits.normal.tool_speed": (1.5, 0.05, 5.0, "m/s", "RL-4", True),
     "robot_limits.normal.elbow_speed": (1.5, 0.05, 5.0, "m/s", "RL-4", True),
-    "robot_limits.normal.joint_speed": (6.4832, 0.1, 6.4832, "rad/s", "RL-4", True),
     "robot_limits.normal.tool_force": (150.0, 50.0, 250.0, "N", "RL-3", True),
     "robot_limits.normal.elbow_force": (150.0, 50.0, 250.0, "N", "RL-3", True),
     "robot_limits.normal.momentum": (25.0, 1.0, 100.0, "kg·m/s", "RL-4", True),
@@ -125,13 +124,17 @@ EXPECTED = {
     "robot_limits.normal.stopping_distance": (0.5, 0.02, 3.0, "m", "RL-4", True),
     "robot_limits.reduced.tool_speed": (0.75, 0.05, 5.0, "m/s", "RL-4", True),
     "robot_limits.reduced.elbow_speed": (0.75, 0.05, 5.0, "m/s", "RL-4", True),
-    "robot_limits.reduced.joint_speed": (6.4832, 0.1, 6.4832, "rad/s", "RL-4", True),
     "robot_limits.reduced.tool_force": (120.0, 50.0, 250.0, "N", "RL-3", True),
     "robot_limits.reduced.elbow_force": (120.0, 50.0, 250.0, "N", "RL-3", True),
     "robot_limits.reduced.momentum": (10.0, 1.0, 100.0, "kg·m/s", "RL-4", True),
     "robot_limits.reduced.power": (200.0, 10.0, 1000.0, "W", "RL-4", True),
     "robot_limits.reduced.stopping_time": (0.3, 0.1, 2.0, "s", "RL-4", True),
     "robot_limits.reduced.stopping_distance": (0.3, 0.02, 3.0, "m", "RL-4", True),
+    **{
+        f"robot_limits.{mode}.joint_speeds.j{joint}": (6.4832, 0.1, 6.4832, "rad/s", "RL-4", True)
+        for mode in ("normal", "reduced")
+        for joint in range(1, 7)
+    },
     **{
         f"robot_limits.{mode}.positions.j{joint}_{end}": (default, -6.3358, 6.3358, "rad", "RL-6", True)
         for mode in ("normal", "reduced")

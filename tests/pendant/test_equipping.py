@@ -147,19 +147,21 @@ def test_it_brakes_after_each_turn_and_settles_before_it_measures() -> None:
     assert cell.last.law is Law.HOLD
 
 
-REDUCED = SpeedLimits(0.75, 0.75, 6.4832, 10.0, 0.3, 0.3)
+REDUCED = SpeedLimits(0.75, 0.75, (6.4832,) * 6, 10.0, 0.3, 0.3)
 
 
 def test_it_is_slow_and_slower_in_reduced() -> None:
     cell = Cell()
     cell.turning()
     usual = cell.supervisor.settings.robot_limits.normal
-    assert cell.last.speed_limits is not None
-    assert cell.last.speed_limits == SLOW._replace(
-        momentum=usual.momentum, stopping_time=usual.stopping_time, stopping_distance=usual.stopping_distance
+    tool, elbow, joint = SLOW
+    slow = {"tcp": tool, "elbow": elbow, "joints": (joint,) * 6}
+    others = (usual.momentum, usual.stopping_time, usual.stopping_distance)
+    assert cell.last.speed_limits == SpeedLimits(**slow)._replace(
+        momentum=others[0], stopping_time=others[1], stopping_distance=others[2]
     )
     cell.step(Inputs(commands=(Command.REDUCED_ON,)))
-    assert cell.last.speed_limits == SpeedLimits(*map(min, SLOW, REDUCED))
+    assert cell.last.speed_limits == REDUCED._replace(**slow)
     cell.step(CLEAR)
     assert cell.last.speed_limits == REDUCED
     cell.step(Inputs(commands=(Command.REDUCED_OFF,)))

@@ -26,7 +26,7 @@ from pendant.tooling.tool_in_use import Tooling
 from pendant.walls.containment import Containment
 
 SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False, "program.speed": 0.4})
-SPEEDS = SpeedLimits(0.1, 0.2, 0.3)
+SPEEDS = SpeedLimits(0.1, 0.2, (0.3,) * 6)
 RANGE = JointRange((-1.0,), (2.0,))
 SHAKE = Shake(Pattern.ENTERED, 0.001, 0.2, 3.0)
 PERIODS = (Remaining("free-drive", 3, 7),)

@@ -15,7 +15,13 @@ Array = NDArray[np.float64]
 
 RED = (201, 42, 42)
 
-RADII: Mapping[str, float] = {"tool": 0.045, "wrist": 0.075, "wrist or tool": 0.075, "elbow or forearm": 0.18}
+RADII: Mapping[str, float] = {
+    "tool": 0.045,
+    "wrist": 0.075,
+    "wrist or tool": 0.075,
+    "elbow or forearm": 0.18,
+    "forearm or wrist": 0.18,
+}
 """Of the mark, so that it stands out of the part [m]."""
 
 LINK_RADIUS = 0.1
@@ -53,16 +59,11 @@ class HitMark:
 
 
 def where(arm: Arm, values: Values) -> Array:
-    """Where the part was that met something, (3,) in B [m]: the tool centre point, or the middle of the link."""
+    """Where the part was that met something, (3,) in B [m]: the tool centre point, the middle of the link, or between two."""
     if values["part"] == "tool":
         return np.array([float(values[axis]) for axis in "xyz"])
     origins, elbow = joint_frames(arm, np.array(posture_of(values)))[:, :3, 3], arm.chain.elbow
-    match values["part"]:
-        case "elbow":
-            return origins[elbow]
-        case "elbow or forearm":
-            return (3.0 * origins[elbow] + origins[elbow + 1]) / 4.0
-        case "forearm":
-            return (origins[elbow] + origins[elbow + 1]) / 2.0
-        case _:
-            return origins[elbow + 1 :].mean(axis=0)
+    wrist: Array = origins[elbow + 1 :].mean(axis=0)
+    places = {"elbow": origins[elbow], "forearm": (origins[elbow] + origins[elbow + 1]) / 2.0}
+    told = [places.get(part, wrist) for part in str(values["part"]).split(" or ")]
+    return np.array(told).mean(axis=0)

@@ -19,7 +19,7 @@ from pendant.safety.robot_limits import (
     TIME_TOLERANCE,
 )
 from pendant.safety.settings import FURTHEST, ModeLimits, RobotLimitSettings
-from pendant.settings.schema import Value
+from pendant.settings.schema import Section, Value
 
 AS_SHIPPED = "As shipped"
 """Title of the preset that ships."""
@@ -64,7 +64,6 @@ class LimitRow(NamedTuple):
 ROWS = (
     LimitRow("Tool speed", "tool_speed", "mm/s", 1e3, SPEED_TOLERANCE),
     LimitRow("Elbow speed", "elbow_speed", "mm/s", 1e3, SPEED_TOLERANCE),
-    LimitRow("Joint speed", "joint_speed", "°/s", degrees(1.0), JOINT_SPEED_TOLERANCE),
     LimitRow("Tool force", "tool_force", "N", 1.0, None),
     LimitRow("Elbow force", "elbow_force", "N", 1.0, None),
     LimitRow("Momentum", "momentum", "kg·m/s", 1.0, MOMENTUM_TOLERANCE),
@@ -72,6 +71,7 @@ ROWS = (
     LimitRow("Stopping time", "stopping_time", "ms", 1e3, TIME_TOLERANCE),
     LimitRow("Stopping distance", "stopping_distance", "mm", 1e3, DISTANCE_TOLERANCE),
 )
+JOINT_SPEEDS = LimitRow("Joint speed", "joint_speeds", "°/s", degrees(1.0), JOINT_SPEED_TOLERANCE)
 POSITIONS = LimitRow("Joint positions", "positions", "°", degrees(1.0), POSITION_TOLERANCE)
 
 
@@ -98,20 +98,31 @@ def told_limits(settings: RobotLimitSettings) -> Iterator[tuple[str, str, str, s
     for row in ROWS:
         values = [f"{row.factor * getattr(held, row.field):g} {row.unit}" for held in (settings.normal, settings.reduced)]
         yield row.name, values[0], values[1], _tolerance(row)
+    yield JOINT_SPEEDS.name, _joint_speeds(settings.normal), _joint_speeds(settings.reduced), _tolerance(JOINT_SPEEDS)
     yield POSITIONS.name, _positions(settings.normal), _positions(settings.reduced), _tolerance(POSITIONS)
 
 
 def _values(held: ModeLimits) -> Iterator[tuple[str, Value]]:
     """Dotted names and values of all limits of a safety mode."""
     for name in held.__struct_fields__:
-        if name != "positions":
-            yield name, getattr(held, name)
-    for name in held.positions.__struct_fields__:
-        yield f"positions.{name}", getattr(held.positions, name)
+        value = getattr(held, name)
+        if isinstance(value, Section):
+            yield from ((f"{name}.{each}", getattr(value, each)) for each in value.__struct_fields__)
+        else:
+            yield name, value
 
 
 def _tolerance(row: LimitRow) -> str:
     return "" if row.tolerance is None else f"{row.factor * row.tolerance:.4g} {row.unit}"
+
+
+def _joint_speeds(limits: ModeLimits) -> str:
+    """What each joint may have, joint by joint where they differ."""
+    held = limits.joint_speeds
+    values = [JOINT_SPEEDS.factor * getattr(held, name) for name in held.__struct_fields__]
+    if len(set(values)) == 1:
+        return f"{values[0]:.4g} {JOINT_SPEEDS.unit}"
+    return ", ".join(f"{joint}: {value:.4g}" for joint, value in enumerate(values, 1)) + f" {JOINT_SPEEDS.unit}"
 
 
 def _positions(limits: ModeLimits) -> str:

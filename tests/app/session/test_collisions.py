@@ -59,9 +59,10 @@ def test_a_hand_that_overpowers_a_standing_arm_is_told_and_does_not_throw_it(rob
     assert found.passed, [verdict for verdict in found.verdicts if not verdict.passed]
 
 
-def test_a_hit_on_a_link_names_the_link() -> None:
+def test_a_hit_at_the_elbow_names_it() -> None:
+    """The forearm begins there, so that it may be named, too."""
     turns = "def turn():\n  speedj([0.5, 0, 0, 0, 0, 0], 5, 3)\nend\n"
     push = {"at": 1.0, "do": "push", "for": 0.5, "part": "elbow", "force": [0.0, 0.0, -200.0]}
     posture = [0.4, -1.0, 1.2, -1.8, -1.57, 0.3]
     _, stops = hits("link", seed=2, duration=2.5, posture=posture, timeline=[{"at": 0.3, "do": "script", "text": turns}, push])
-    assert [stop.values["part"] for stop in stops] == ["elbow"]
+    assert [str(stop.values["part"]).split(" or ")[0] for stop in stops] == ["elbow"]

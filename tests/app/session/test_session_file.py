@@ -1,12 +1,16 @@
 from pathlib import Path
 from typing import Any
 
+import msgspec
+import numpy as np
 import pytest
 
 from app.files.checked import BadInput, convert, load, parse
 from app.session.prepare import MOUNTINGS, prepare
-from app.session.session_file import Session, Setup, bundled, find, folder
+from app.session.session_file import FIRST_START, Session, Setup, bundled, find, folder
+from benchmarks.hold import ARMS
 from sim.arm.scenario import table
+from sim.plant.true_arm import Plant
 from tests.items import each_of
 
 LEAST: dict[str, Any] = {"title": "least", "duration": 2.0}
@@ -263,3 +267,13 @@ def test_the_example_of_the_tools_page_is_a_session() -> None:
         "vacuum-cup",
     ]
     assert len(session.timeline) == 2
+
+
+@pytest.mark.parametrize("robot", ARMS)
+def test_the_page_begins_with_an_arm_that_may_touch_itself_and_does_not(robot: str) -> None:
+    """CD-2: as shipped, each arm."""
+    prepared = prepare(msgspec.structs.replace(FIRST_START, robot=robot), "the page")
+    plant = Plant(prepared.arm, prepared.scenario)
+    assert sum(plant.model.pair(k).name.startswith("itself ") for k in range(plant.model.npair)) == 9
+    plant.advance(np.zeros(prepared.arm.n))
+    assert plant.data.ncon == 0

@@ -114,7 +114,7 @@ def test_what_is_too_fast_for_reduced_is_stopped_once() -> None:
     """FD-1: 0.5 s of grace are 250 ticks; what goes on in STOP is the stop's to brake."""
     bench, fast = resting(), estimate(v_tcp=0.9)
     bench.step(Inputs(commands=(ON,)))
-    assert bench.last.speed_limits == SpeedLimits(0.75, 0.75, 6.4832, 10.0, 0.3, 0.3)
+    assert bench.last.speed_limits == SpeedLimits(0.75, 0.75, (6.4832,) * 6, 10.0, 0.3, 0.3)
     bench.events.clear()
     assert bench.run(249, NOTHING, fast).mode is Mode.TEACH
     bench.run(20, NOTHING, fast)

@@ -15,22 +15,34 @@ from pendant.tick.modes import Law, Mode, Safety
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
-JOINTS, ELBOW = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"), 2
+JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 USE = CollisionSettings()
 BELOW, ABOVE = 0.95, 1.05
 
 
-def touched(tool: float = 0.0, link: float = 0.0, joint: int = 1, *, clipped: bool = False, sensed: bool = True) -> Estimate:
-    """An arm that feels these forces [N] on its tool and on the link that `joint` moves."""
+ELBOW, FOREARM, WRIST = (0.95, 0.05, 0.0), (0.0, 1.0, 0.0), (0.01, 0.04, 0.95)
+"""Probabilities of elbow, forearm and wrist, of which one is sure."""
+
+
+def touched(
+    tool: float = 0.0,
+    link: float = 0.0,
+    joint: int = 1,
+    parts: tuple[float, float, float] = ELBOW,
+    *,
+    clipped: bool = False,
+    sensed: bool = True,
+) -> Estimate:
+    """An arm that feels these forces [N] on its tool and on a link, which is most likely that of `parts`."""
     felt = estimate()
     felt.F_user = np.array([0.6 * tool, 0.0, -0.8 * tool, 0.0, 0.0, 0.0])
-    felt.link_force, felt.clipped, felt.wrench_valid = LinkForce(joint, link, 0.3 * link, 1), clipped, sensed
+    felt.link_force, felt.clipped, felt.wrench_valid = LinkForce(joint, link, 0.3 * link, 1, parts), clipped, sensed
     return felt
 
 
 def hit(felt: Estimate, *, moves: bool = True, use: CollisionSettings = USE) -> Kind | None:
     """What an arm says that felt nothing before."""
-    watch = Collisions(JOINTS, ELBOW)
+    watch = Collisions(JOINTS)
     assert watch.step(touched(), use, moves=moves) is None
     event = watch.step(felt, use, moves=moves)
     return None if event is None else event.kind
@@ -48,7 +60,7 @@ def test_either_force_has_its_limit(moves: bool, limit: float, part: str) -> Non
 def test_what_is_not_a_number_is_a_collision() -> None:
     assert hit(touched(tool=math.nan)) is Kind.COLLISION
     assert hit(touched(link=math.nan)) is Kind.COLLISION
-    assert Collisions(JOINTS, ELBOW).step(touched(tool=math.inf), USE, moves=True) is not None
+    assert Collisions(JOINTS).step(touched(tool=math.inf), USE, moves=True) is not None
 
 
 def test_a_flange_sensor_that_is_out_tells_nothing() -> None:
@@ -66,11 +78,16 @@ def test_beyond_the_range_of_the_sensor_the_joints_feel_the_rest() -> None:
     [
         (touched(tool=80.0), "tool", "wrist_3", 250.0),
         (touched(tool=100.0, link=80.0, joint=4, clipped=True), "tool", "wrist_3", 250.0),
-        (touched(link=80.0, joint=0), "elbow or forearm", "base", 150.0),
+        (touched(link=80.0, joint=0, parts=(0.3, 0.7, 0.0)), "elbow or forearm", "base", 150.0),
+        (touched(link=80.0, joint=0, parts=(0.88, 0.12, 0.0)), "elbow or forearm", "base", 150.0),
+        (touched(link=80.0, joint=0, parts=(0.92, 0.08, 0.0)), "elbow", "base", 150.0),
         (touched(link=80.0, joint=1), "elbow", "shoulder", 150.0),
-        (touched(link=80.0, joint=2), "forearm", "elbow", 150.0),
-        (touched(link=80.0, joint=3), "wrist", "wrist_1", 250.0),
-        (touched(link=80.0, joint=5, sensed=False), "wrist or tool", "wrist_3", 250.0),
+        (touched(link=80.0, joint=2, parts=FOREARM), "forearm", "elbow", 150.0),
+        (touched(link=80.0, joint=2, parts=(0.05, 0.55, 0.4)), "forearm or wrist", "elbow", 250.0),
+        (touched(link=80.0, joint=3, parts=WRIST), "wrist", "wrist_1", 250.0),
+        (touched(link=80.0, joint=5, parts=WRIST, sensed=False), "wrist or tool", "wrist_3", 250.0),
+        (touched(link=80.0, joint=2, parts=(0.0, 0.6, 0.4), sensed=False), "forearm or wrist or tool", "elbow", 250.0),
+        (touched(link=80.0, joint=2, parts=(0.0, 0.0, 0.0)), "arm", "elbow", 250.0),
     ],
 )
 def test_the_event_tells_with_what_where_how_hard_and_how_fast(felt: Estimate, part: str, joint: str, speed: float) -> None:
@@ -79,7 +96,7 @@ def test_the_event_tells_with_what_where_how_hard_and_how_fast(felt: Estimate, p
     before.v_tcp, before.v_elbow = 0.25, 0.15
     felt.v_tcp, felt.v_elbow = 0.025, 0.015
     felt.tcp = np.array([0.4, -0.1, 0.2, 0.0, 0.0, 0.0])
-    watch = Collisions(JOINTS, ELBOW)
+    watch = Collisions(JOINTS)
     for _ in range(10):
         watch.step(before, USE, moves=True)
     event = watch.step(felt, USE, moves=True)
@@ -97,7 +114,7 @@ def test_the_event_tells_with_what_where_how_hard_and_how_fast(felt: Estimate, p
 
 
 def test_a_speed_from_long_before_the_contact_does_not_count() -> None:
-    watch, fast, slow = Collisions(JOINTS, ELBOW), touched(), touched(tool=ABOVE * USE.force)
+    watch, fast, slow = Collisions(JOINTS), touched(), touched(tool=ABOVE * USE.force)
     fast.v_tcp, slow.v_tcp = 0.8, 0.1
     watch.step(fast, USE, moves=True)
     for _ in range(BEFORE):
@@ -112,14 +129,14 @@ def test_a_speed_from_long_before_the_contact_does_not_count() -> None:
     [
         (touched(tool=BELOW * HELD_BY * USE.force), ""),
         (touched(tool=ABOVE * HELD_BY * USE.force), "tool"),
-        (touched(link=ABOVE * HELD_BY * USE.force, joint=2), "forearm"),
-        (touched(tool=30.0, link=40.0, joint=3), "wrist"),
+        (touched(link=ABOVE * HELD_BY * USE.force, joint=2, parts=FOREARM), "forearm"),
+        (touched(tool=30.0, link=40.0, joint=3, parts=WRIST), "wrist"),
         (touched(tool=math.nan), ""),
     ],
 )
 @pytest.mark.parametrize("on", [True, False])
 def test_an_arm_that_does_not_follow_is_told_what_holds_it(felt: Estimate, part: str, on: bool) -> None:
-    watch, use = Collisions(JOINTS, ELBOW), CollisionSettings(on=on)
+    watch, use = Collisions(JOINTS), CollisionSettings(on=on)
     watch.step(touched(), use, moves=True)
     assert watch.holding(felt, use)["part"] == part
     watch.rest()
@@ -127,7 +144,7 @@ def test_an_arm_that_does_not_follow_is_told_what_holds_it(felt: Estimate, part:
 
 
 def test_an_arm_that_is_touched_already_may_move_away_but_not_press_on() -> None:
-    watch = Collisions(JOINTS, ELBOW)
+    watch = Collisions(JOINTS)
     watch.rest()
     for force in (180.0, 180.0 + BELOW * MORE, 120.0):
         assert watch.step(touched(tool=force), USE, moves=True) is None
@@ -136,7 +153,7 @@ def test_an_arm_that_is_touched_already_may_move_away_but_not_press_on() -> None
 
 
 def test_once_off_the_limit_is_that_of_the_settings_again() -> None:
-    watch = Collisions(JOINTS, ELBOW)
+    watch = Collisions(JOINTS)
     watch.rest()
     for force in (180.0, 100.0, 0.0):
         assert watch.step(touched(tool=force), USE, moves=True) is None
@@ -144,7 +161,7 @@ def test_once_off_the_limit_is_that_of_the_settings_again() -> None:
 
 
 def test_a_motion_may_begin_with_the_force_that_held_the_standing_arm() -> None:
-    watch = Collisions(JOINTS, ELBOW)
+    watch = Collisions(JOINTS)
     assert watch.step(touched(link=BELOW * USE.clamping), USE, moves=False) is None
     assert watch.step(touched(link=BELOW * USE.clamping), USE, moves=True) is None
 

@@ -20,7 +20,7 @@ from pendant.safety.robot_limits import (
     SpeedLimits,
     robot_limits,
 )
-from pendant.safety.settings import FURTHEST
+from pendant.safety.settings import FASTEST, FURTHEST
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate, MotionMeasures
 from pendant.tick.modes import Law, Mode, Safety
@@ -29,8 +29,8 @@ from tests.pendant.freedrive.test_state_machine import JOINTS, LET_GO, Bench
 
 ON, OFF = Inputs(commands=(Command.REDUCED_ON,)), Inputs(commands=(Command.REDUCED_OFF,))
 RESET = Inputs(commands=(Command.RESET,))
-NORMAL = SpeedLimits(1.5, 1.5, 6.4832, 25.0, 0.4, 0.5)
-REDUCED = SpeedLimits(0.75, 0.75, 6.4832, 10.0, 0.3, 0.3)
+NORMAL = SpeedLimits(1.5, 1.5, (6.4832,) * 6, 25.0, 0.4, 0.5)
+REDUCED = SpeedLimits(0.75, 0.75, (6.4832,) * 6, 10.0, 0.3, 0.3)
 ARM = ArmRating(JOINTS, (6.28,) * 6, (3.14,) * 6)
 
 
@@ -76,8 +76,20 @@ def test_power_bounds_the_speed_of_a_tool_that_presses_as_it_may() -> None:
     assert limits(normal__power=75.0, normal__tool_force=50.0).speeds.tcp == pytest.approx(1.5)
 
 
-def test_a_joint_is_as_fast_as_its_limit_and_never_much_faster_than_it_is_made_for() -> None:
-    assert limits(normal__joint_speed=1.0).joint_speeds == pytest.approx([1.0 + JOINT_SPEED_TOLERANCE] * 6)
+def test_a_joint_is_as_fast_as_its_own_limit_and_never_much_faster_than_it_is_made_for() -> None:
+    changes = {"normal__joint_speeds__j1": 1.0, "normal__joint_speeds__j6": 2.0, "reduced__joint_speeds__j6": 0.5}
+    normal, reduced = limits(**changes), limits(reduced=True, **changes)
+    assert normal.speeds.joints == (1.0, *[FASTEST] * 4, 2.0)
+    rated = 3.14 + ABOVE_RATED
+    assert normal.joint_speeds == pytest.approx([1.0 + JOINT_SPEED_TOLERANCE, *[rated] * 4, 2.0 + JOINT_SPEED_TOLERANCE])
+    assert reduced.joint_speeds == pytest.approx([1.0 + JOINT_SPEED_TOLERANCE, *[rated] * 4, 0.5 + JOINT_SPEED_TOLERANCE])
+
+
+def test_the_limits_that_ship_leave_each_arm_what_its_maker_configures() -> None:
+    """Within half a degree a second: the configuration of a UR5e has 3.3416, that of a UR10e 2.2864 twice, then 3.3416."""
+    for rated, wanted in (((3.1416,) * 6, [3.3416] * 6), ((2.0944, 2.0944, *[3.1416] * 4), [2.2864, 2.2864, *[3.3416] * 4])):
+        held = robot_limits(Settings().robot_limits, ARM._replace(speeds=rated), reduced=False)
+        assert held.joint_speeds == pytest.approx(wanted, abs=0.01)
 
 
 def test_the_range_of_a_joint_is_what_both_leave_of_its_own() -> None:
@@ -191,7 +203,7 @@ def test_the_limits_checksum_is_on_every_decision() -> None:
     assert len(first) == 8
     bench.step(Inputs(settings={"free_drive.period": 5.0}))
     assert bench.step().limits == first
-    bench.step(Inputs(settings={"robot_limits.reduced.joint_speed": 0.5}))
+    bench.step(Inputs(settings={"robot_limits.reduced.joint_speeds.j4": 0.5}))
     assert bench.step().limits != first
 
 

@@ -22,7 +22,7 @@ LIMIT = np.array([0.020, 0.021, 0.022, 0.023, 0.024, 0.025])  # [rad]
 def found(wanted: np.ndarray | None, device: Simulation) -> Estimate:
     """The estimate of a standing arm whose reference is at these angles (n,), or that has none."""
     estimator, meter = device.estimator, device.controller.references.meter
-    watch = ArmWatch(device.dynamics, estimator.momentum, UR5E.sensors, UR5E.chain.elbow, meter=meter, following=LIMIT)
+    watch = ArmWatch(device.dynamics, estimator.momentum, UR5E, meter=meter, following=LIMIT)
     watch.read(device.sensors.read(device.plant, device.current), device.estimate, wanted, free=False)
     return device.estimate
 

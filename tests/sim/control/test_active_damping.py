@@ -93,11 +93,20 @@ def test_it_only_ever_takes_energy(qd: list[float], size: float, onset: float) -
 
 def test_in_reduced_the_lower_limits_hold() -> None:
     qd = np.array([0.4, 0.3, 0.2, 0.6, 0.5, 0.3])
-    reduced = SpeedLimits(0.25, 0.2, 1.0)
+    reduced = SpeedLimits(0.25, 0.2, (1.0,) * N)
     both = moving(qd, reduced=reduced)
     np.testing.assert_array_equal(both, moving(qd, limits=Damping(0.25, 0.2, 1.0, *LIMITS[3:])))
     assert both.any()
-    np.testing.assert_array_equal(moving(qd, limits=Damping(0.25, 0.2, 1.0, *LIMITS[3:]), reduced=SpeedLimits(9, 9, 9)), both)
+    low, high = Damping(0.25, 0.2, 1.0, *LIMITS[3:]), SpeedLimits(9, 9, (9,) * N)
+    np.testing.assert_array_equal(moving(qd, limits=low, reduced=high), both)
+
+
+def test_each_joint_has_a_limit_of_its_own() -> None:
+    """Both turn equally fast, and the robot's limit of the second is lower: it alone is resisted, as one with that limit is."""
+    qd, free = np.array([0.5, 0.5, 0.0, 0.0, 0.0, 0.0]), LIMITS._replace(tcp=OFF, elbow=OFF)
+    torque = moving(qd, limits=free, reduced=SpeedLimits(9, 9, (9.0, 0.6, *[9.0] * (N - 2))))
+    assert torque[0] == 0.0
+    assert torque[1] == moving(qd, limits=free._replace(joint=0.6))[1] < 0.0
 
 
 def test_a_limit_falls_smoothly_and_rises_at_once() -> None:

@@ -80,7 +80,7 @@ def test_the_speed_share_slows_it_down_and_zero_halts_it() -> None:
 
 def test_in_reduced_tool_elbow_and_joints_stay_below_its_limits() -> None:
     motion = jog("joint", 1, 1)
-    limits, speed = SpeedLimits(0.1, 0.1, 0.2), 0.0
+    limits, speed = SpeedLimits(0.1, 0.1, (0.2,) * 6), 0.0
     for _ in range(300):
         now = motion.step(1.0, limits)
         speed = float(np.linalg.norm(tool(now.q)[0] - tool(now.q - TICK * now.qd)[0])) / TICK
@@ -150,8 +150,8 @@ def test_letting_go_on_the_way_to_a_posture_stops_the_arm() -> None:
 
 
 def test_reduced_mode_is_slower_than_manual_speed_where_it_asks_for_that() -> None:
-    assert at_manual_speed(there(HOME), None) == SpeedLimits(PLANNED_SHARE * MANUAL, PLANNED_SHARE * MANUAL, np.inf)
-    assert at_manual_speed(there(HOME), SpeedLimits(0.1, 0.5, 0.3)) == SpeedLimits(0.1, PLANNED_SHARE * MANUAL, 0.3)
+    assert at_manual_speed(there(HOME), None) == SpeedLimits(PLANNED_SHARE * MANUAL, PLANNED_SHARE * MANUAL, ())
+    assert at_manual_speed(there(HOME), SpeedLimits(0.1, 0.5, (0.3,) * 6)) == SpeedLimits(0.1, PLANNED_SHARE * MANUAL, (0.3,) * 6)
     assert at_manual_speed(None, None) is None
 
 

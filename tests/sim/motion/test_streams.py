@@ -179,7 +179,7 @@ def test_a_singular_posture_is_refused_and_one_ahead_is_a_problem() -> None:
 
 def test_a_lower_share_of_the_speed_and_reduced_are_kept() -> None:
     move = SpeedTool(speed=(0.0, 0.3, 0.0), turning=(0.0,) * 3, acceleration=1.0, turning_acceleration=1.0)
-    for limits, share, most in ((None, 0.5, 0.15), (SpeedLimits(0.1, 0.1, 1.0), 1.0, 0.1)):
+    for limits, share, most in ((None, 0.5, 0.15), (SpeedLimits(0.1, 0.1, (1.0,) * 6), 1.0, 0.1)):
         places = np.array([tool(row.q)[0] for row in play(tool_stream(move), 500, limits, share)])
         assert 0.8 * most < np.linalg.norm(np.diff(places[300:], axis=0), axis=1).max() / TICK <= 1.01 * most
 
@@ -209,7 +209,7 @@ def test_on_the_way_to_another_pose_the_speed_stays_and_the_way_is_a_circle() ->
 def test_as_reduced_begins_the_joints_slow_down_within_their_accelerations() -> None:
     stream = SpeedStream(REST, SpeedJoints(qd=(2.0, -1.0, 0.0, 0.0, 0.0, 0.0), acceleration=10.0), LIMITS, PACE)
     before = play(stream, 150)[-1]
-    rows = [before, *(stream.step(1.0, SpeedLimits(0.1, 0.1, 0.2)) for _ in range(300))]
+    rows = [before, *(stream.step(1.0, SpeedLimits(0.1, 0.1, (0.2,) * 6)) for _ in range(300))]
     change = np.abs(np.diff([row.qd for row in rows], axis=0))
     assert (change <= ACCELERATION * TICK * (1.0 + 1e-9)).all()
     assert 0.1 < float(np.abs(rows[-1].qd).max()) <= 0.2

@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from app.web.tuning.limit_presets import AS_SHIPPED, OTHER, POSITIONS, ROWS, limit_presets, preset_of, told_limits
+from app.web.tuning.limit_presets import AS_SHIPPED, JOINT_SPEEDS, OTHER, POSITIONS, ROWS, limit_presets, preset_of, told_limits
 from pendant.all_settings import Settings, apply, value_of
 
 GUIDE = (Path(__file__).parents[4] / "docs" / "guide" / "stops.md").read_text(encoding="utf-8")
@@ -16,9 +16,9 @@ def test_every_limit_has_a_row_on_the_page_and_in_the_docs() -> None:
     shipped = Settings().robot_limits
     fields = [field.name for field in msgspec.structs.fields(shipped.normal)]
     assert fields == [field.name for field in msgspec.structs.fields(shipped.reduced)]
-    assert sorted(fields) == sorted([*[row.field for row in ROWS], POSITIONS.field])
+    assert sorted(fields) == sorted([*[row.field for row in ROWS], JOINT_SPEEDS.field, POSITIONS.field])
     page = list(told_limits(Settings().robot_limits))
-    assert [row[0] for row in page] == [*[row.name for row in ROWS], POSITIONS.name]
+    assert [row[0] for row in page] == [*[row.name for row in ROWS], JOINT_SPEEDS.name, POSITIONS.name]
     for name, normal, reduced, tolerance in page:
         (line,) = [line for line in GUIDE.splitlines() if line.startswith(f"| {name.lower()} |")]
         cells = [cell.strip() for cell in line.split("|")]
@@ -43,6 +43,13 @@ def test_a_preset_that_was_taken_is_known_by_its_name(title: str) -> None:
     assert value_of(settings, "robot_limits.normal.tool_speed") == limit_presets()[title].normal.tool_speed
     for other in ({"robot_limits.normal.power": 77.0}, {"robot_limits.reduced.positions.j1_max": 0.5}):
         assert preset_of(apply(settings, other).robot_limits) == OTHER
+
+
+def test_joint_speeds_are_told_joint_by_joint_where_they_differ() -> None:
+    settings = apply(Settings(), {"robot_limits.reduced.joint_speeds.j2": 0.5})
+    told = {name: values for name, *values in told_limits(settings.robot_limits)}
+    others = ", ".join(f"{k}: 371.5" for k in range(3, 7))
+    assert told[JOINT_SPEEDS.name] == ["371.5 °/s", f"1: 371.5, 2: 28.65, {others} °/s", "1.15 °/s"]
 
 
 def test_the_joints_whose_positions_are_limited_are_named() -> None:
