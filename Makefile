@@ -136,14 +136,16 @@ pictures: | $(BIN)/python
 	fi
 
 # The wheel, alone in an empty environment, in an empty folder: it imports the web app, reads all arms, and prepares all sessions
-# that show claims. It runs none: that would compile all kernels once more, which takes longer than all else here.
+# that show claims; a command that needs an extra names it. It runs none: that would compile all kernels once more, which takes
+# longer than all else here.
 wheel: | $(BIN)/python
 	@rm -rf build/wheel && mkdir -p build/wheel/empty
 	$(PYTHON) -m venv build/wheel/venv
 	build/wheel/venv/bin/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
 	build/wheel/venv/bin/python $(INSTALL) build/wheel/*.whl
 	cd build/wheel/empty && ../venv/bin/pendant robots >/dev/null && \
-		../venv/bin/python -c "import app.serving; from app.runs.coverage import claiming; assert claiming()"
+		../venv/bin/python -c "import app.serving; from app.runs.coverage import claiming; assert claiming()" && \
+		../venv/bin/pendant sweep sequence-limit 2>&1 | grep -q "pip install 'pendant-sim\[studies\]'"
 	@rm -rf build/wheel
 
 # All of them run, even when one misses a bar or the code changes under it; the exit code tells.
