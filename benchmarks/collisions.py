@@ -2,7 +2,8 @@
 
 Jog, program, script and servo motions of four arms, with payloads within their own, meet a table, a post or foam of 1e3 to
 2e5 N/m at 20 to 1,000 mm/s. A hit counts where the twin's force exceeds the limit by 20 % or the twin's tool is kept 20 mm from
-where it should be. Truth is read for scoring alone. The second part is motion without a contact, which nothing may stop.
+where it should be. Truth is read for scoring alone. The second part is a tool that presses slowly, the third motion without a
+contact, which nothing may stop.
 """
 
 from itertools import pairwise
@@ -50,6 +51,9 @@ FIRST_PEAK = 0.02  # [s]
 OVER = 1.2  # times the limit, from where the twin's force counts
 KEPT = 0.020  # from where it should be, from where the twin counts [m]
 TRIES, SPACED = 8, 100_003
+PRESSING = 0.01  # speed of a tool that presses [m/s]
+PRESSED = 6.0  # that it is watched after the touch: by then 150 N are there from 2.5e3 N/m on [s]
+TOLERANCE = 25.0  # of the tool force (docs/guide/stops.md) [N]
 SPEED_EDGES = (0.02, 0.1, 0.25, 1.001)  # of the table's rows [m/s]
 STIFFNESS_EDGES = (1e3, 1e4, 1e5, 2.001e5)  # and of its columns [N/m]
 OFF = {"collision.on": False, "following.on": False}
@@ -98,13 +102,19 @@ def measure_strike(strike: Strike) -> Result | None:
     return None
 
 
+def measure_pressed(strike: Strike) -> tuple[float, str] | None:
+    """Largest force [N] of a tool that presses, and the part that the stop names; None where it met nothing."""
+    met = next((seen for seen in (_course(drawn, PRESSED) for drawn in _drawn(strike)) if seen is not None), None)
+    return None if met is None else (_most(met), met.stopped)
+
+
 def _drawn(strike: Strike) -> list[Strike]:
     return [strike._replace(seed=strike.seed + SPACED * attempt) for attempt in range(TRIES)]
 
 
-def _course(strike: Strike) -> Course | None:
+def _course(strike: Strike, after: float = AFTER) -> Course | None:
     try:
-        return Trial(strike, {}).run()
+        return Trial(strike, {}).run(after)
     except ValueError:  # it would begin inside of what it is to meet
         return None
 
@@ -179,8 +189,8 @@ class Trial:
         full = np.vstack([jacobian[:3] + np.cross(jacobian[3:].T, R @ self.probe.tcp).T, jacobian[3:]])
         return towards, np.linalg.solve(full, np.concatenate([strike.speed * towards, np.zeros(3)]))
 
-    def run(self) -> Course | None:
-        """Let it move and hit; None where it met nothing."""
+    def run(self, after: float = AFTER) -> Course | None:
+        """Let it move and hit, and watch it so long [s] from then on; None where it met nothing."""
         device, ticks, touched, shape = self.device, 0, 0, ""
         peak = later = kept = 0.0
         stopped, stopped_at = "", 0
@@ -208,7 +218,7 @@ class Trial:
                     kept = max(kept, self._apart(wanted.q))
             elif stopped or ticks > LATEST / TICK:
                 return None
-            if touched and (ticks - touched) * TICK > AFTER:
+            if touched and (ticks - touched) * TICK > after:
                 return Course(touched, shape, peak, later, kept, stopped, (stopped_at - touched) * TICK if stopped else 0.0)
 
     def _apart(self, q: Array) -> float:
@@ -312,6 +322,7 @@ def measure(report: Report) -> None:
     for part in get_args(Part):
         some = [r for r in hard if r.strike.part == part]
         report.share(f"{part}: stopped", sum(bool(r.seen.stopped) for r in some), len(some))
+    _pressed(report, base)
     _quiet(report, base)
     wrong = [r for r in hard if not r.seen.stopped] + [r for r in stopped if not _right(r)]
     for r in wrong[:40]:
@@ -337,6 +348,16 @@ def _most(course: Course) -> float:
 
 def _cell(r: Result, soft: float, stiff: float) -> bool:
     return bool(r.seen.stopped) and soft <= r.strike.stiffness < stiff
+
+
+def _pressed(report: Report, base: int) -> None:
+    """A tool that presses slowly: its force stays within the tool force and its tolerance."""
+    drawn = [strike for strike in strikes(base + 7400, 360 if report.options.full else 72) if strike.part == "tool"]
+    found = spread(measure_pressed, [strike._replace(speed=PRESSING) for strike in drawn])
+    met = [pressed for pressed in found if pressed is not None]
+    most = Settings().robot_limits.normal.tool_force + TOLERANCE
+    report.share("tools that press at 10 mm/s and are stopped", sum(bool(stopped) for _, stopped in met), len(met))
+    report.row("largest force of them", max(force for force, _ in met), "N", at_most=most, n=len(met))
 
 
 def _quiet(report: Report, base: int) -> None:
