@@ -54,7 +54,9 @@ def read_table(path: Path, columns: str | None, n: int) -> tuple[ColumnMap, dict
     out = dict[str, Array]()
     for name, places in found.places.items():  # one after the other: an hour is a quarter of a gigabyte
         columns_of = [f"c{place}" for place in places]
-        out[name] = np.column_stack([table.column(each).to_numpy(zero_copy_only=False) for each in columns_of])
+        out[name] = np.empty((table.num_rows, len(places)))
+        for k, each in enumerate(columns_of):
+            out[name][:, k] = table.column(each).to_numpy(zero_copy_only=False)
         table = table.drop_columns(columns_of)
     return found, out, told
 
