@@ -47,14 +47,11 @@ def read_table(path: Path, columns: str | None, n: int) -> tuple[ColumnMap, dict
     last = max(max(places) for places in found.places.values()) if found.places else -1
     if last >= width:
         raise BadInput(where, "--columns", ABSENT, f"{last + 1} columns are named, and the table has {width}")
-    table, broken = _read(path, parting=parting, decimal=decimal, skip=skip, width=width, found=found)
-    if broken > BROKEN_SHARE * (broken + table.num_rows):
-        raise BadInput(where, "", ABSENT, f"{broken} of {broken + table.num_rows} lines do not have {width} columns")
+    out, broken = _read(path, parting=parting, decimal=decimal, skip=skip, width=width, found=found)
+    count = len(next(iter(out.values()), ()))
+    if broken > BROKEN_SHARE * (broken + count):
+        raise BadInput(where, "", ABSENT, f"{broken} of {broken + count} lines do not have {width} columns")
     told = [f"{counted(broken, 'line')} with another number of columns left out"] if broken else []
-    out = {
-        name: np.column_stack([table.column(f"c{place}").to_numpy(zero_copy_only=False) for place in places])
-        for name, places in found.places.items()
-    }
     return found, out, told
 
 
@@ -110,7 +107,7 @@ def _one_space(line: str, parting: str) -> str:
     return re.sub(" +", " ", line.strip()) if parting == " " else line
 
 
-def _read(path: Path, *, parting: str, decimal: str, skip: int, width: int, found: ColumnMap) -> tuple[pa.Table, int]:
+def _read(path: Path, *, parting: str, decimal: str, skip: int, width: int, found: ColumnMap) -> tuple[dict[str, Array], int]:
     broken = 0
 
     def leave_out(_row: csv.InvalidRow) -> str:
@@ -123,8 +120,9 @@ def _read(path: Path, *, parting: str, decimal: str, skip: int, width: int, foun
     if parting == " ":  # columns that are set out by several spaces
         lines = path.read_text("utf-8-sig", "replace").splitlines()
         source = pa.BufferReader("\n".join(_one_space(line, parting) for line in lines).encode())
+    parts: dict[str, list[Array]] = {name: [] for name in found.places}
     try:
-        table = csv.read_csv(
+        batches = csv.open_csv(
             source,
             read_options=csv.ReadOptions(
                 column_names=[f"c{k}" for k in range(width)], skip_rows=skip, use_threads=False, encoding="latin-1"
@@ -137,9 +135,14 @@ def _read(path: Path, *, parting: str, decimal: str, skip: int, width: int, foun
                 decimal_point=decimal,
             ),
         )
+        # Batch by batch: an hour is a quarter of a gigabyte, and is not to be there twice.
+        for batch in batches:
+            for name, places in found.places.items():
+                rows = [batch.column(f"c{place}").to_numpy(zero_copy_only=False) for place in places]
+                parts[name].append(np.column_stack(rows))
     except pa.ArrowInvalid as error:
         value = re.search(r"invalid value '([^']*)'", str(error))
         row = re.search(r"Row #(\d+)", str(error))
         line = f"line {int(row[1])}" if row else ""
         raise BadInput(path.name, line, value[1] if value else ABSENT, "expected a number") from None
-    return table, broken
+    return {name: np.concatenate(parts.pop(name)) for name in found.places}, broken
