@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from app.against_command import AGAINST_EXAMPLES, against_
 from app.command_exit import run_command_line
 from app.command_options import (
     PORT,
@@ -164,6 +165,7 @@ def replay(
 
 
 app.command("export", epilog=EXAMPLES)(export_)
+app.command("against", epilog=AGAINST_EXAMPLES)(against_)
 
 
 @app.command(epilog=example("pendant claims", "pendant claims --mutants --out results/claims"))

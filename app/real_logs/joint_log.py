@@ -23,6 +23,7 @@ class JointLog:
     wrench: Array | None  # (k, 6) what the flange exerts on what it carries, in F [N, N·m]
     temperature: Array | None  # (k, n) of the joints [°C]
     theta: Array | None  # (k, n) motor angle referred to the output [rad]
+    guided: NDArray[np.bool_] | None  # (k,) a hand may lead the arm
     starts: tuple[int, ...]  # rows at which a stretch without a gap begins, first 0
     told: tuple[str, ...]  # what was mended, and what is not in it, a sentence each
 
@@ -42,12 +43,12 @@ class JointLog:
         """Length without its gaps [s]."""
         return float(sum(self.t[part][-1] - self.t[part][0] for part in self.stretches))
 
-    def motor_torque(self, arm: Arm) -> Array:
+    def motor_torque(self, arm: Arm, rows: slice = slice(None)) -> Array:
         """Motor torque referred to the output (k, n) [N·m]: as logged, or of the currents by the arm's constants."""
         if self.torque is not None:
-            return self.torque
+            return self.torque[rows]
         assert self.current is not None  # one of both is there
-        return self.current * np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
+        return self.current[rows] * np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
 
 
 def counted(number: int, what: str) -> str:

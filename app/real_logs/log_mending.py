@@ -19,7 +19,7 @@ GAP = 5.0
 """Times the usual distance of two rows: from here on nothing is derived across it. The longest below it is 0.1 s at 50 Hz."""
 SHORTEST = 2.0
 """Of a log of which something can be told [s]."""
-IMPOSSIBLE = {"t": np.inf, "q": 1e4, "qd": 1e4, "current": 1e6, "torque": 1e6, "theta": 1e4}
+IMPOSSIBLE = {"t": np.inf, "q": 1e4, "qd": 1e4, "current": 1e6, "torque": 1e6, "theta": 1e4, "guided": 2.0}
 """What no arm has in any unit: a packet that was read from the wrong byte."""
 UNUSABLE = 0.2
 """Largest share of rows that may lack a number."""
@@ -81,6 +81,7 @@ def mend(name: str, columns: dict[str, Array], arm: Arm, told: list[str], *, giv
         columns.get("wrench"),
         columns.get("temperature"),
         columns.get("theta"),
+        None if "guided" not in columns else columns["guided"][:, 0] > 0.0,
         starts,
         (),
     )

@@ -5,11 +5,15 @@ from pathlib import Path
 import numpy as np
 
 from app.files.bad_input import ABSENT, BadInput
+from app.log.layout import WORDS
 from app.log_reading.reader import Log, read
 from app.real_logs.joint_log import JointLog
 from app.real_logs.log_bag import read_bag
 from app.real_logs.log_mending import mend
 from app.real_logs.log_table import read_table
+from app.session.timeline_checks import Prepared, applied
+from pendant.all_settings import Settings
+from pendant.tick.modes import Phase
 from sim.arm.arm_file import Arm
 
 
@@ -31,14 +35,33 @@ def read_log(path: Path, arm: Arm, *, columns: str | None = None, effort: str = 
         raise BadInput(path.name, "", ABSENT, "is a bag in SQLite; `ros2 bag convert` makes MCAP of it")
     if path.suffix != ".mcap":
         found, table, told = read_table(path, columns, arm.n)
-        scaled = {what: each * found.factors.get(what, 1.0) for what, each in table.items()}
-        return mend(path.name, scaled, arm, told, given=frozenset(found.factors))
+        for what, factor in found.factors.items():
+            table[what] *= factor
+        return mend(path.name, table, arm, told, given=frozenset(found.factors))
     try:
         recording = read(path)
     except BadInput:
         values, told = read_bag(path, arm, effort)
         return mend(path.name, values, arm, told)
     return _of_recording(path.name, recording, arm)
+
+
+def believed(path: Path, prepared: Prepared, *, chosen: bool) -> Prepared:
+    """What the controller is to believe in: of a recording of ours its own arm, tool, payload and settings, else `prepared`.
+
+    Args:
+        path: of the log.
+        prepared: what the command asks for.
+        chosen: the user asked for it, so that a recording's own does not count.
+    """
+    if chosen or path.suffix != ".mcap" or not path.is_file():
+        return prepared
+    try:
+        recording = read(path)
+    except BadInput:
+        return prepared
+    settings = applied(Settings(), recording.settings[0][1], path.name, "settings") if recording.settings else Settings()
+    return Prepared(recording.arm, recording.scenario, settings, None, path.name)
 
 
 def _of_recording(name: str, recording: Log, arm: Arm) -> JointLog:
@@ -48,4 +71,5 @@ def _of_recording(name: str, recording: Log, arm: Arm) -> JointLog:
     state = recording.state
     columns = {"t": recording.t[:, None], "q": state["q"], "qd": state["qd"], "torque": state["tau_m"]}
     columns |= {"wrench": state["w_sensor"], "theta": state["theta"]}
+    columns["guided"] = (state["phase"] != WORDS["phase"].index(Phase.OFF.value))[:, None]
     return mend(name, {what: np.asarray(each, dtype=np.float64) for what, each in columns.items()}, arm, [])
