@@ -34,6 +34,7 @@ from app.ending import ending
 from app.export_command import EXAMPLES, export_
 from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
 from app.files.library import load_arm, robots
+from app.fit_command import FIT_EXAMPLES, fit_
 from app.run_command import RUN_EXAMPLES, run_
 from app.session.session_file import FIRST_START, Setup
 from app.sweep_command import SWEEP_EXAMPLES, sweep_
@@ -160,6 +161,7 @@ def robot_(
 
 app.command("run", epilog=RUN_EXAMPLES)(run_)
 app.command("sweep", epilog=SWEEP_EXAMPLES)(sweep_)
+app.command("fit", epilog=FIT_EXAMPLES)(fit_)
 app.command("schema", epilog=SCHEMA_EXAMPLES)(schema_)
 app.command("check", epilog=CHECK_EXAMPLES)(check_)
 

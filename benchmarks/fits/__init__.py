@@ -1,0 +1,1 @@
+"""Arms that are drawn, and what a fit makes of their logs."""

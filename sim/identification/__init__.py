@@ -1,0 +1,1 @@
+"""An arm's numbers from how it moved: friction, rotor inertia, torque constant, links and load. Uses arm/, rigid_body/."""
