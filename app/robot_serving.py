@@ -49,7 +49,7 @@ def get_ready() -> None:
 
 
 def open_interfaces(
-    loop: Loop, prepared: Prepared, network: Network, recording: LiveRecording, token: str | None = None
+    loop: Loop, prepared: Prepared, network: Network, recording: LiveRecording, *, token: str | None = None
 ) -> RobotInterfaces:
     """Open the network interfaces of a loop that has not been started yet.
 

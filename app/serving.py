@@ -152,7 +152,7 @@ class ServedArms:
     def open(self, prepared: Prepared) -> RobotInterfaces | None:
         """Open the network interfaces, where they are wanted. Raises BadInput as `open_interfaces`."""
         if self._network is not None:
-            self._interfaces = open_interfaces(self._loop, prepared, self._network, self._recording, self._token)
+            self._interfaces = open_interfaces(self._loop, prepared, self._network, self._recording, token=self._token)
             self._token = self._interfaces.token
         return self._interfaces
 

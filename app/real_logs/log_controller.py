@@ -72,7 +72,7 @@ class LogController:
         self._rigid, constants = made.dynamics.recursion, made.calibration
         self._settings, self._looks = settings, looks
         known: SensorSpec = sensor_spec(arm)
-        self._monitor, self._collisions = ContactMonitor(known), Collisions(tuple(arm.chain.joints), arm.chain.elbow)
+        self._monitor, self._collisions = ContactMonitor(known), Collisions(tuple(arm.chain.joints))
         way = settings.joint_control
         self._use = way if two_angles else replace(way, from_deflection=False, friction_from=type(way)().friction_from)
         motors = arm.motors
