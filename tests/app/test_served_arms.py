@@ -80,7 +80,7 @@ def test_a_network_that_cannot_be_opened_again_has_ended_and_it_is_said(
     arms = ServedArms(loop, LiveRecording(loop, tmp_path), network=Network(next(free_addresses())))
     assert arms.open(UR5E) is not None
 
-    def refuse(*_: object) -> RobotInterfaces:
+    def refuse(*_: object, token: str | None) -> RobotInterfaces:
         raise BadInput("--interfaces", "robot", "ur10e", "an arm of 6 joints")
 
     monkeypatch.setattr("app.serving.open_interfaces", refuse)
