@@ -67,7 +67,7 @@ def sentences(found: Against) -> list[str]:
 
 
 def write(found: Against, out: Path) -> None:
-    """Write `against.html`, `against.csv` and `contacts.csv` into a folder."""
+    """Write the page, the lines in its figures and the contacts into a folder."""
     joints = found.arm.chain.joints
     names = ("q", "tau_m", "predicted", "fixed_friction", "tau_ext")
     head = ["t", *(f"{name}_{joint}" for name in names for joint in joints), "F_x", "F_y", "F_z"]
