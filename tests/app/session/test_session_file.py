@@ -219,9 +219,9 @@ def test_what_the_schema_forbids_is_refused_in_one_line(fields: dict[str, Any], 
     assert "\n" not in str(caught.value)
 
 
-LASTS = {"payload-by-itself": 42.0, "contact-3-compared": 17.0, "contact-4-compared": 17.0}
+LASTS = {"payload-by-itself": 42.0, "contact-3-compared": 17.0, "contact-4-compared": 17.0, "contact-directions": 14.0}
 """Sessions that cannot be short [s]: the wrist goes through six postures, there and back, and stands in each; one
-rule after the other is held against a push below and one above its limit."""
+rule after the other is held against a push below and one above its limit; a program waits until the arm has stopped swinging."""
 
 
 @each_of(bundled("sessions"))
