@@ -208,6 +208,7 @@ def disks(report: Report, count: int) -> None:
 
 def measure(report: Report) -> None:
     """Fill the report."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a bench in the background ignores it, and so would all it starts
     signals(report, SIZES[report.options.full])
     disks(report, FULL[report.options.full])
 

@@ -99,6 +99,8 @@ class ControlChannel:
                 return refusal(HTTPStatus.BAD_REQUEST, str(error))
             except ClientDisconnect:
                 return refusal(HTTPStatus.BAD_REQUEST, f"{WHERE}: the client left")
+            except asyncio.CancelledError:  # raised further it would be printed, though nothing is wrong
+                return refusal(HTTPStatus.SERVICE_UNAVAILABLE, f"{WHERE}: the robot ends")
             except TimeoutError:
                 return refusal(HTTPStatus.REQUEST_TIMEOUT, f"{WHERE}: a request that takes more than {LONGEST:g} s")
             except Exception as error:  # noqa: BLE001 - of this request alone

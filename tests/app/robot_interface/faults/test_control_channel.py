@@ -17,7 +17,7 @@ from app.log.live import LiveRecording
 from app.robot_interface.faults import control_channel, timed_http
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.ports import CONTROL
-from app.served_robot import free_addresses
+from app.served_robot import ServedRobot, free_addresses
 from app.session.session_file import SHIPPED_ALONE, AllowedFiles, Setup, located
 from pendant.all_settings import Settings
 from sim.arm.scenario import Scenario
@@ -262,3 +262,14 @@ def test_a_wish_that_a_restart_takes_away_is_answered(channel: Channel) -> None:
     channel.loop.reset().result(10.0)
     assert begun.cancelled()
     channel.ask("pace", {"paused": False})
+
+
+def test_a_request_that_is_not_whole_when_the_robot_ends_is_no_error(tmp_path: Path) -> None:
+    robot = ServedRobot(tmp_path)
+    robot.start()
+    head = "POST /begin HTTP/1.1\r\nHost: {}:{}\r\nAuthorization: Bearer {}\r\nContent-Length: 1000\r\n\r\n{{"
+    with socket.create_connection((robot.host, robot.ports[CONTROL]), 5.0) as line:
+        line.sendall(head.format(robot.host, robot.ports[CONTROL], robot._token).encode())
+        robot.state()  # by the time it has answered it has read what came before
+        robot.stop()
+    assert "Traceback" not in (tmp_path / "robot.log").read_text()
