@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from app.files.bad_input import ABSENT, BadInput
 from app.real_logs.joint_log import JointLog, counted
+from app.real_logs.torque_residuals import own_terms
 from sim.arm.arm_file import Arm
 from sim.arm_problems import problems
 from sim.identification.arm_fit import ArmFit, fit, told
@@ -119,7 +120,7 @@ def _best(found: ArmFit, run: LoggedRun, moving: NDArray[np.bool_], least: int) 
     out = np.full(len(rigid), np.nan)
     for i, m in enumerate(moving):
         speed, torque = s.qd[m, i], s.torque[m, i]
-        columns = np.column_stack([np.sign(speed), speed, rigid[i, m], np.ones_like(speed)])
+        columns = own_terms(speed, rigid[i, m])
         out[i] = _rms(columns @ np.linalg.lstsq(columns, torque, rcond=None)[0] - torque, least)
     return out
 

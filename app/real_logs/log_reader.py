@@ -16,6 +16,9 @@ from pendant.all_settings import Settings
 from pendant.tick.modes import Phase
 from sim.arm.arm_file import Arm
 
+EFFORTS = "torque", "current"
+"""What the effort of a bag's JointState may be: UR's driver gives currents."""
+
 
 def read_log(path: Path, arm: Arm, *, columns: str | None = None, effort: str = "torque") -> JointLog:
     """A log of an arm from a file.
@@ -33,6 +36,8 @@ def read_log(path: Path, arm: Arm, *, columns: str | None = None, effort: str = 
         raise BadInput(str(path), "", ABSENT, "is no file; expected a log of an arm")
     if path.suffix == ".db3":
         raise BadInput(path.name, "", ABSENT, "is a bag in SQLite; `ros2 bag convert` makes MCAP of it")
+    if effort not in EFFORTS:
+        raise BadInput("--effort", "", effort, f"expected {' or '.join(EFFORTS)}")
     if path.suffix != ".mcap":
         found, table, told = read_table(path, columns, arm.n)
         for what, factor in found.factors.items():

@@ -22,6 +22,11 @@ LEFT = ("measured", "without friction", "fixed", "learned")
 file; the same less the friction as learned so far."""
 
 
+def own_terms(speed: Array, rigid: Array) -> Array:
+    """Terms (k, TERMS) of a fit of a joint to one log: sign, speed, rigid torque, offset; of speed and rigid torque (k,)."""
+    return np.column_stack([np.sign(speed), speed, rigid, np.ones_like(speed)])
+
+
 class Second(NamedTuple):
     """Sums over a second of a log."""
 
@@ -58,7 +63,7 @@ class Residuals:
         for i in range(moves.shape[1]):
             on = moves[:, i]
             v, drive = out.speed[on, i], (out.rotor + out.rigid)[on, i]
-            rows = np.column_stack([np.sign(v), v, drive, np.ones_like(v), out.tau_m[on, i]])
+            rows = np.column_stack([own_terms(v, drive), out.tau_m[on, i]])
             self._normal[i] += rows.T @ rows
         return fixed
 

@@ -22,6 +22,7 @@ import math
 import numpy as np
 
 from sim.arm.arm_file import Arm
+from sim.collisions.link_force import since_rest
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
 from sim.estimation.torque_errors import CAUSES, left_over, noise, variance
@@ -71,15 +72,12 @@ def hit_parts(models, shapes, force):
     felt, certainty = np.empty(n), np.empty(n)
     change = np.empty(CAUSES)
     for i in range(n):
-        residual, causes, rest = momentum.residual[i], errors.causes[i], errors.rest[i]
+        residual, causes = momentum.residual[i], errors.causes[i]
         unexplained = noise(errors, momentum.doubt[i], causes[0])
-        for k in range(CAUSES):
-            change[k] = causes[k] - rest[1 + k]
-        whole, changed = variance(errors, i, causes), variance(errors, i, change)
-        if whole < changed:
+        felt[i] = since_rest(errors, i, residual, change)
+        whole, error = variance(errors, i, causes), variance(errors, i, change)
+        if whole < error:
             felt[i], error = left_over(errors.shares[i], residual, causes), whole
-        else:
-            felt[i], error = left_over(errors.shares[i], residual - rest[0], change), changed
         certainty[i] = 1.0 / (error + unexplained + (SHARE * felt[i]) ** 2)
     size, odds = USUAL * force, np.full(PARTS, -math.inf)
     for k in range(own.count):

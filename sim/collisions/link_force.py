@@ -32,13 +32,11 @@ def link_force(models, elbow):
     certain = np.zeros(n)
     change = np.empty(CAUSES)
     for i in range(n):
-        residual, causes, rest = momentum.residual[i], errors.causes[i], errors.rest[i]
+        residual, causes = momentum.residual[i], errors.causes[i]
         unexplained = noise(errors, momentum.doubt[i], causes[0])
         left = left_over(errors.shares[i], residual, causes)
         size = beyond(errors, i, (left, causes), (unexplained, SURE))
-        for k in range(CAUSES):
-            change[k] = causes[k] - rest[1 + k]
-        left = left_over(errors.shares[i], residual - rest[0], change)
+        left = since_rest(errors, i, residual, change)
         changed = beyond(errors, i, (left, change), (unexplained, SURE))
         if abs(changed) > abs(size):
             size = changed
@@ -63,3 +61,11 @@ def _lever(rigid, i, last, elbow):
     a, b, c = rigid.jacobian[3, i], rigid.jacobian[4, i], rigid.jacobian[5, i]
     u, v, w = y * c - z * b, z * a - x * c, x * b - y * a
     return np.sqrt(u * u + v * v + w * w)
+
+
+@kernel
+def since_rest(errors, i, torque, change):
+    """What the causes leave of the change of joint i's torque since nothing was touched [N·m]; `change` takes theirs."""
+    for k in range(CAUSES):
+        change[k] = errors.causes[i, k] - errors.rest[i, 1 + k]
+    return left_over(errors.shares[i], torque - errors.rest[i, 0], change)
