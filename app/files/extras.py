@@ -4,15 +4,15 @@ from importlib.util import find_spec
 
 PACKAGES = {
     "network": ("starlette", "uvicorn"),
-    "studies": ("dask", "distributed", "SALib", "pyarrow"),
     "report": ("matplotlib",),
+    "studies": ("dask", "distributed", "SALib", "pyarrow", "matplotlib"),
     "learning": ("gymnasium", "av", "pyarrow"),
-    "logs": ("mcap_ros2", "pyarrow"),
+    "logs": ("mcap_ros2", "pyarrow", "matplotlib"),
 }
 """Extra -> the packages that one of its commands imports first."""
 
-OF_COMMAND = {"export": "learning", "sweep": "studies"}
-"""Command -> its extra, where a package is in several."""
+OF_COMMAND = {"against": "logs", "export": "learning", "fit": "logs", "sweep": "studies"}
+"""Command -> its extra, which counts where a package is in several; else the first that has it."""
 
 
 def there(package: str) -> bool:
@@ -31,5 +31,6 @@ def to_install(module: str | None, command: str = "") -> str | None:
     having = [extra for extra, packages in PACKAGES.items() if package in packages]
     if not having:
         return None
-    extra = OF_COMMAND.get(command, having[0])
+    extra = OF_COMMAND.get(command)
+    extra = extra if extra in having else having[0]
     return f"needs {package}, which is not installed: pip install 'pendant-sim[{extra}]'"

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 import pendant_sim
-from app.command_exit import run_command_line
+from app.commands.command_exit import run_command_line
+from app.commands.run_command import run_
 from app.engine.spreading import spread
 from app.files import extras
-from app.run_command import run_
 from pendant_sim.ours import hidden
 
 
@@ -77,6 +77,8 @@ def test_a_study_that_is_not_there_is_bad_input(tmp_path: Path) -> None:
     ("module", "command", "extra"),
     [
         ("pyarrow.csv", "sweep", "studies"),
+        ("pyarrow.csv", "fit", "logs"),
+        ("matplotlib.figure", "against", "logs"),
         ("pyarrow.parquet", "export", "learning"),
         ("uvicorn", "robot", "network"),
         ("mcap_ros2.decoder", "", "logs"),
@@ -132,7 +134,7 @@ def test_without_dask_one_process_does_all(monkeypatch: pytest.MonkeyPatch) -> N
 def test_without_what_draws_a_run_keeps_its_numbers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for module in ("app.report.files", "app.run_command"):
+    for module in ("app.report.files", "app.commands.run_command"):
         monkeypatch.setattr(f"{module}.there", lambda package: False)
     run_(["hold"], out=tmp_path)
     assert (tmp_path / "summary.json").exists()
