@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from app.files.checked import BadInput, convert
+from app.files.checked import convert
 from app.log_reading.reader import Log
 from app.log_reading.reader import read as read_log
 from app.runs.jobs import Job, run_all, work
@@ -19,30 +19,11 @@ from app.session.prepare import prepare
 from app.session.session_file import Session, find, opened
 from pendant.inputs import Button, Command, Inputs
 from sim.exchange.desk import Wishes
-from sim.plant.touch import Pull, Push, Touch
+from sim.plant.touch import Touch
 from sim.simulation import Simulation
 
 if TYPE_CHECKING:
     from app.studies.sweep import Swept
-
-__all__ = [
-    "BadInput",
-    "Button",
-    "Command",
-    "Log",
-    "Pull",
-    "Push",
-    "RunOutcome",
-    "Session",
-    "Simulation",
-    "read",
-    "run",
-    "run_many",
-    "session",
-    "step",
-    "stepped",
-    "sweep",
-]
 
 
 def session(source: str | Path | dict[str, Any] | Session, **fields: Any) -> Session:

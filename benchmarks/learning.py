@@ -14,10 +14,10 @@ from statistics import median
 import gymnasium
 import numpy as np
 
-from app.api import Push, session, step, stepped
 from app.learning.environments import GUIDE_TO_POINT
 from app.learning.in_processes import InProcesses
 from benchmarks.common import Report, main
+from pendant_sim import Push, session, step, stepped
 
 COUNT = 8
 AT_LEAST = 1.8

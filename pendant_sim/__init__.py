@@ -22,26 +22,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from app.api import (
-        BadInput,
-        Button,
-        Command,
-        Log,
-        Pull,
-        Push,
-        RunOutcome,
-        Session,
-        Simulation,
-        read,
-        run,
-        run_many,
-        session,
-        step,
-        stepped,
-        sweep,
-    )
+    from app.api import read, run, run_many, session, step, stepped, sweep
+    from app.files.bad_input import BadInput
     from app.files.library import load_arm
+    from app.log_reading.reader import Log
+    from app.runs.runner import RunOutcome
     from app.served_robot import ServedRobot as Robot
+    from app.session.session_file import Session
+    from pendant.inputs import Button, Command
+    from sim.plant.touch import Pull, Push
+    from sim.simulation import Simulation
 
 __all__ = [
     "BadInput",
@@ -64,8 +54,20 @@ __all__ = [
     "sweep",
 ]
 
-ELSEWHERE = {"Robot": ("app.served_robot", "ServedRobot"), "load_arm": ("app.files.library", "load_arm")}
-"""Module and name of what is not in app.api."""
+ELSEWHERE = {
+    "BadInput": "app.files.bad_input",
+    "Button": "pendant.inputs",
+    "Command": "pendant.inputs",
+    "Log": "app.log_reading.reader",
+    "Pull": "sim.plant.touch",
+    "Push": "sim.plant.touch",
+    "RunOutcome": "app.runs.runner",
+    "ServedRobot": "app.served_robot",
+    "Session": "app.session.session_file",
+    "Simulation": "sim.simulation",
+    "load_arm": "app.files.library",
+}
+"""Module of each name that is not in app.api."""
 
 
 def __getattr__(name: str) -> Any:
@@ -76,5 +78,5 @@ def __getattr__(name: str) -> Any:
     trouble = hidden()
     if trouble is not None:
         raise ImportError(trouble)
-    module, its_name = ELSEWHERE.get(name, ("app.api", name))
-    return getattr(import_module(module), its_name)
+    its_name = "ServedRobot" if name == "Robot" else name
+    return getattr(import_module(ELSEWHERE.get(its_name, "app.api")), its_name)

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.api import BadInput, Button, Push, read, run, run_many, session, step, stepped
 from app.learning.demonstrations import demonstrations
+from pendant_sim import BadInput, Button, Push, read, run, run_many, session, step, stepped
 
 ROOT = Path(__file__).parents[2]
 FIELDS = {"title": "t", "duration": 0.1, "expectations": [{"expect": "state", "mode": "TEACH", "at": 0.05}]}
