@@ -8,9 +8,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.against_command import AGAINST_EXAMPLES, against_
-from app.command_exit import run_command_line
-from app.command_options import (
+from app.commands.against_command import AGAINST_EXAMPLES, against_
+from app.commands.command_exit import run_command_line
+from app.commands.command_options import (
     PORT,
     AnyFile,
     Config,
@@ -30,14 +30,14 @@ from app.command_options import (
     example,
     set_up,
 )
+from app.commands.export_command import EXAMPLES, export_
+from app.commands.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
+from app.commands.fit_command import FIT_EXAMPLES, fit_
+from app.commands.run_command import RUN_EXAMPLES, run_
+from app.commands.sweep_command import SWEEP_EXAMPLES, sweep_
 from app.ending import ending
-from app.export_command import EXAMPLES, export_
-from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
 from app.files.library import load_arm, robots
-from app.fit_command import FIT_EXAMPLES, fit_
-from app.run_command import RUN_EXAMPLES, run_
 from app.session.session_file import FIRST_START, Setup
-from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
 
 app = typer.Typer(

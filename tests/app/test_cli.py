@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from app import cli
-from app.command_options import setting
+from app.commands.command_options import setting
 from app.files.checked import BadInput
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from msgspec.structs import replace
 
-from app.command_options import as_kept, set_up
+from app.commands.command_options import as_kept, set_up
 from app.files.checked import BadInput, parse
 from app.files.library import load_arm, load_tool
 from app.files.taught_program import Lesson, TaughtStep

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.command_options import example
+from app.commands.command_options import LogColumns, LogEffort, example
 from app.files.bad_input import BadInput
 
 if TYPE_CHECKING:
@@ -25,12 +25,6 @@ FIT_EXAMPLES = example(
 OF_ITSELF = "left by lines of its own"
 """The usual yardstick: sign, speed, rigid torque and offset by least squares, of the log that is judged."""
 
-Columns = Annotated[
-    str | None,
-    typer.Option(help="What the columns of a table without a header are, such as t,q,qd,current,-12.", show_default=False),
-]
-Effort = Annotated[str, typer.Option(help="What the effort in a bag of ROS 2 is: torque, or current as UR's driver has it.")]
-
 
 def fit_(
     logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs to learn from: CSV, MCAP, or recordings.")],
@@ -44,8 +38,8 @@ def fit_(
     judge: Annotated[
         list[Path] | None, typer.Option(metavar="LOG", help="A log to judge with, and not to learn from; repeatable.")
     ] = None,
-    columns: Columns = None,
-    effort: Effort = "torque",
+    columns: LogColumns = None,
+    effort: LogEffort = "torque",
 ) -> None:
     """Fit an arm to its logs: friction, rotor inertia, torque constants, centres of mass, and the load."""
     from app.files.library import load_arm
@@ -53,8 +47,6 @@ def fit_(
     from app.real_logs.log_reader import read_log
 
     arm = load_arm(robot, "--robot")
-    if effort not in ("torque", "current"):
-        raise BadInput("--effort", "", effort, "expected torque or current")
     read = [read_log(path, arm, columns=columns, effort=effort) for path in [*logs, *(judge or [])]]
     console = Console(soft_wrap=True)
     for log in read:

@@ -38,7 +38,7 @@ def _done(app: typer.Typer) -> int:
     except BadInput as error:
         return refuse(str(error))
     except ModuleNotFoundError as error:
-        command = sys.argv[1]
+        command = "".join(sys.argv[1:2])
         wanted = to_install(error.name, command)
         if wanted is None:
             raise

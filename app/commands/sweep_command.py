@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from app.command_options import AnyFile, Seed, example
+from app.commands.command_options import AnyFile, Seed, example
 from app.ending import ending
 
 SWEEP_EXAMPLES = example(

@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from app.command_options import AnyFile, example
+from app.commands.command_options import AnyFile, example
 from app.files.checked import BadInput, load
 from app.files.library import load_arm
 from app.session.prepare import prepare

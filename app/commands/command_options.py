@@ -68,6 +68,16 @@ RecordSplit = Annotated[
 AnyFile = Annotated[bool, typer.Option("--any-file", help="Arms and tools that a file names may be in any folder.")]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
 
+LogColumns = Annotated[
+    str | None,
+    typer.Option(
+        "--columns",
+        help="What the columns of a table are, such as t,q,qd,current,-12 or t:ms,q:deg,torque.",
+        show_default=False,
+    ),
+]
+LogEffort = Annotated[str, typer.Option("--effort", help="What the effort of a bag's JointState is: torque or current.")]
+
 Keep = Annotated[
     Path | None,
     typer.Option(

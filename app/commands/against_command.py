@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.command_options import AnyFile, Config, Set, example, set_up, setting
+from app.commands.command_options import AnyFile, Config, LogColumns, LogEffort, Set, example, set_up, setting
 from app.ending import ending
 from app.session.session_file import Setup
 
@@ -19,20 +19,14 @@ AGAINST_EXAMPLES = example(
     "pendant against out/log.mcap",
 )
 
-Columns = Annotated[
-    str | None,
-    typer.Option(help="What the columns of a table are, such as t,q,qd,current,-12 or t:ms,q:deg,torque.", show_default=False),
-]
-Effort = Annotated[str, typer.Option(help="What the effort of a bag's JointState is: torque or current.")]
-
 
 def against_(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="CSV of an RTDE recorder, a table, a bag of ROS 2, or a recording.")],
     *,
     robot: Annotated[str | None, typer.Option(help="Arm of the log: a name that `pendant robots` lists, or a file.")] = None,
     config: Config = None,
-    columns: Columns = None,
-    effort: Effort = "torque",
+    columns: LogColumns = None,
+    effort: LogEffort = "torque",
     set_: Set = None,
     out: Annotated[Path | None, typer.Option(help="Folder for a page and two CSV files.", show_default=False)] = None,
     any_file: AnyFile = False,
@@ -41,15 +35,12 @@ def against_(
 
     Tool, payload and mounting are those of --config; of a recording, its own.
     """
-    from app.files.bad_input import BadInput
     from app.real_logs.against import hold_against
     from app.real_logs.against_page import sentences, tables, write
     from app.real_logs.log_reader import believed, read_log
     from app.runs.progress import counting
     from app.session.timeline_checks import applied
 
-    if effort not in ("torque", "current"):
-        raise BadInput("--effort", "", effort, "torque or current")
     prepared = set_up(robot, config, any_file, "against", shipped=Setup(mismatch="nominal"))
     prepared = believed(log, prepared, chosen=robot is not None or config is not None)
     changes = dict(setting(text) for text in set_ or [])

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
-from app.command_exit import refuse
-from app.command_options import AnyFile, Out, Seed, Seeds, SessionNames, Set, example, setting
+from app.commands.command_exit import refuse
+from app.commands.command_options import AnyFile, Out, Seed, Seeds, SessionNames, Set, example, setting
 from app.ending import ending
 from app.files.bad_input import ABSENT, BadInput
 from app.files.extras import there, to_install
