@@ -1,10 +1,14 @@
 """The gripper of a served robot: its port, its program, and its end."""
 
 import socket
+import time
 
 import pytest
 
 from app.served_robot import ServedRobot
+
+PATIENCE = 15.0
+"""For the fingers, on a machine that is busy [s]."""
 
 SETUP = {
     "tool": "two-finger",
@@ -22,10 +26,10 @@ def asked(connection: socket.socket, line: str) -> str:
 
 
 def wait(connection: socket.socket, line: str, wanted: str) -> None:
-    for _ in range(500):
-        if asked(connection, line) == wanted:
-            return
-    raise AssertionError(f"{line} never gave {wanted}")
+    end = time.monotonic() + PATIENCE
+    while asked(connection, line) != wanted:
+        assert time.monotonic() < end, f"{line} never gave {wanted}"
+        time.sleep(0.01)
 
 
 @pytest.mark.parametrize("robot", [SETUP], indirect=True)
