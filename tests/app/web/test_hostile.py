@@ -106,7 +106,8 @@ def test_the_operator_sets_every_control_to_its_other_end(served: Served, join: 
     assert len(able) > 40
     teach = served.docks.teach
     # They make other options and controls, or take some away.
-    makers = (teach.steps.kind, teach.steps.loop, teach.register, teach.steps.insert, settings.view)
+    steps = teach.steps
+    makers = (steps.kind, steps.loop, teach.register, steps.insert, settings.take_limits, settings.view)
     late = ["", *(control._impl.uuid for control in makers)]
     for uuid in sorted(able, key=lambda uuid: late.index(uuid) if uuid in late else 0):
         client.set(uuid, value=other_value(controls(served)[uuid]))
