@@ -12,7 +12,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).parent.parent
 REQUIREMENTS = ROOT / "docs" / "reference" / "requirements.md"
 
-ID = re.compile(r"\b(?:FD|VW|HF|CD|AF|RL)-\d+[a-z]?\b")
+ID = re.compile(r"\b(?:FD|VW|HF|CD|AF|RL|GR)-\d+[a-z]?\b")
 RANGE = re.compile(rf"({ID.pattern})\s+to\s+({ID.pattern})")
 ROW = re.compile(rf"^\| ({ID.pattern}) \| (.+) \|$", re.MULTILINE)
 

@@ -1,4 +1,4 @@
-"""The drive of a gripper: how wide the fingers stand, where they go, and how hard they press."""
+"""The drive of a gripper: how wide the fingers stand, where they go, and how hard they press (GR-3)."""
 
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Where fingers or a vacuum cup meet a part: a line through a box or a cylinder."""
+"""Where fingers or a vacuum cup meet a part: a line through a box or a cylinder (GR-1)."""
 
 import math
 from typing import NamedTuple

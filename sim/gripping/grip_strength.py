@@ -1,4 +1,4 @@
-"""How firmly a grip holds: the share of its strength that a load takes. More than 1, and the part slips.
+"""How firmly a grip holds: the share of its strength that a load takes. More than 1, and the part slips (GR-1).
 
 The contact is Coulomb friction on a round patch of even pressure: force along it and torque about its normal share what friction
 gives on an ellipse (Howe and Cutkosky, Practical force-motion models for sliding manipulation, 1996). A disc of radius R, pressed

@@ -1,4 +1,5 @@
-"""A part that a gripper holds: while it does, the part is one with the payload, and its own body goes along without weight.
+"""A part that a gripper holds: while it does, the part is one with the payload, and its own body goes along
+without weight (GR-2).
 
 Its shape on the payload (`carried/<name>`, sim.plant.objects) is what then touches the world; its own body touches nothing.
 """

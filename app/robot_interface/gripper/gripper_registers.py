@@ -1,4 +1,4 @@
-"""What the port of a Robotiq gripper answers: registers that are set and read, a line at a time.
+"""What the port of a Robotiq gripper answers: registers that are set and read, a line at a time (GR-3).
 
 `SET POS 255 SPE 128 FOR 50` sets registers, all or none, and is answered with `ack`; `GET POS` with `POS 255` and a line end.
 What is no such line is answered with `?`. The registers are those of the gripper (Robotiq 2F-85 instruction manual, "Control

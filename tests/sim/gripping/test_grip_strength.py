@@ -1,4 +1,4 @@
-"""What a grip bears: by Coulomb's friction, worked out by hand."""
+"""What a grip bears: by Coulomb's friction, worked out by hand (GR-1)."""
 
 import math
 

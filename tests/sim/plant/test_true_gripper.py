@@ -1,4 +1,4 @@
-"""Parts in a true gripper: gripped, carried, lost, put down. The arm is the real one, held by its controller."""
+"""Parts in a true gripper: gripped, carried, lost, put down (GR-1, GR-2). The arm is the real one, held by its controller."""
 
 import numpy as np
 import pytest

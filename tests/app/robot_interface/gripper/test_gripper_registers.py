@@ -1,4 +1,4 @@
-"""The gripper's text protocol: what real programs say, and what nobody should say."""
+"""The gripper's text protocol: what real programs say, and what nobody should say (GR-3)."""
 
 from dataclasses import dataclass, field
 
