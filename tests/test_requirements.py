@@ -32,7 +32,7 @@ def said(path: Path) -> str:
 def missing(text: str, here: Path, names: set[str]) -> list[str]:
     """The files that a text cites and that are neither in the repository nor made by it."""
     found = [name for name in FILE.findall(text) if name not in MADE and name not in names]
-    return [name for name in found if not any((folder / name).exists() for folder in (ROOT, here))]
+    return [name for name in found if not any((folder / name).exists() for folder in (ROOT, ROOT / "tests", here))]
 
 
 def test_every_cited_id_is_a_requirement() -> None:
