@@ -180,19 +180,20 @@ class DashboardCommands:
         return self._when(Ask((Command.PAUSE_PROGRAM,)), Kind.PROGRAM_PAUSED, "Pausing program", "Failed to execute: pause")
 
     def _power_on(self) -> Answer:
+        return self._power(Ask(idle=True), "power on", "Powering on")
+
+    def _power(self, ask: Ask, line: str, done: str) -> Answer:
+        """Give the drives power; what has it already is answered as on a robot, and what may not have it is told."""
         state = self._cabinet.state
-        if state.powerless and state.safety_mode in READY:
-            return self._pending(Ask(idle=True), "Powering on")
-        return "Powering on"
+        if not state.powerless and not state.failure:
+            return done
+        return self._pending(ask, done) if state.safety_mode in READY else f"Failed to execute: {line}"
 
     def _power_off(self) -> Answer:
         return self._pending(Ask((Command.POWER_OFF,), idle=False), "Powering off")
 
     def _release_brakes(self) -> Answer:
-        state = self._cabinet.state
-        if state.powerless and state.safety_mode in READY:
-            return self._pending(Ask((Command.RESET,), standing=True), "Brake releasing")
-        return "Brake releasing"
+        return self._power(Ask((Command.RESET,), standing=True), "brake release", "Brake releasing")
 
     def _unlock(self) -> Answer:
         state = self._cabinet.state

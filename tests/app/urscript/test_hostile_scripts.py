@@ -37,6 +37,24 @@ def test_programs_that_ask_for_all_there_is_are_ended_with_a_message(course: Cou
     assert ended.error.startswith("line ") or not ended.over
 
 
+@pytest.mark.parametrize(
+    ("allowed", "beyond", "said"),
+    [
+        (
+            "x = " + "(" * 60 + "1" + ")" * 60,
+            "x = " + "(" * 61 + "1" + ")" * 61,
+            "column 65: brackets within brackets, more than 60",
+        ),
+        ("x = 1 #" + "-" * 32761, "x = 1 #" + "-" * 32762, "column 1: the line has 32769 characters, allowed: 32768"),
+    ],
+)
+def test_the_limits_of_a_line_are_named(allowed: str, beyond: str, said: str) -> None:
+    assert len(read_script(allowed)) == 1
+    with pytest.raises(ScriptTrouble) as refused:
+        read_script(f"x = 1\n{beyond}")
+    assert str(refused.value) == f"line 2, {said}"
+
+
 DEEP = {
     "sum": "x = 1" + " + 1" * 600,
     "not": "x = " + "not " * 600 + "True",

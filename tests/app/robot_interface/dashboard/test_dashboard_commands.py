@@ -8,7 +8,7 @@ import pytest
 from app.robot_interface.controller.robot_words import SafetyMode
 from app.robot_interface.dashboard.dashboard_commands import LOCAL, LOCKED, DashboardCommands, Pending
 from app.session.actions import Laboratory
-from pendant.events.event import Kind
+from pendant.events.event import Event, Kind
 from pendant.inputs import Command
 from pendant.tick.modes import TICK_RATE, Mode
 from sim.plant.changes import SensorFault
@@ -157,8 +157,12 @@ def test_power_off_on_and_brake_release_go_through_the_modes() -> None:
 def test_an_emergency_stop_is_not_ended_by_a_client_until_its_button_is_out() -> None:
     panel = Panel()
     panel.page(Command.EMERGENCY_STOP)
-    for line in ("power on", "brake release", "unlock protective stop"):
-        panel.say(line)
+    for line, answer in (
+        ("power on", "Failed to execute: power on"),
+        ("brake release", "Failed to execute: brake release"),
+        ("unlock protective stop", "Protective stop releasing"),
+    ):
+        assert panel.say(line) == answer
         panel.step(60)
         assert (panel.say("robotmode"), panel.say("safetymode")) == ("Robotmode: POWER_OFF", "Safetymode: ROBOT_EMERGENCY_STOP")
     panel.page(Command.EMERGENCY_STOP_RELEASED)
@@ -166,6 +170,22 @@ def test_an_emergency_stop_is_not_ended_by_a_client_until_its_button_is_out() ->
     panel.say("power on")
     panel.say("brake release")
     assert panel.say("robotmode") == "Robotmode: RUNNING"
+
+
+def test_a_simulation_that_has_broken_down_has_no_power_to_give() -> None:
+    panel = Panel()
+    panel.cabinet.note(Event(Kind.BROKEN_DOWN, 60, {"reason": "it broke"}))
+    assert panel.say("safetymode") == "Safetymode: FAULT"
+    for line in ("power on", "brake release"):
+        assert panel.say(line) == f"Failed to execute: {line}"
+
+
+def test_a_popup_goes_with_the_power() -> None:
+    panel = Panel()
+    panel.say("popup Refill the feeder")
+    assert panel.cabinet.state.popup == "Refill the feeder"
+    panel.say("power off")
+    assert panel.cabinet.state.popup == ""
 
 
 def protected() -> Panel:
