@@ -185,7 +185,7 @@ class DashboardCommands:
     def _power(self, ask: Ask, line: str, done: str) -> Answer:
         """Give the drives power; what has it already is answered as on a robot, and what may not have it is told."""
         state = self._cabinet.state
-        if not state.powerless and not state.failure:
+        if not state.powerless:
             return done
         return self._pending(ask, done) if state.safety_mode in READY else f"Failed to execute: {line}"
 
