@@ -74,7 +74,7 @@ class Draw:
         rng, home, most = self._rng, np.array(arm.chain.home), np.array(arm.limits.ends)
         if start in ("home", "moving"):
             return home + rng.uniform(-0.6, 0.6, arm.n)
-        q = rng.uniform(-math.pi, math.pi, arm.n)
+        q = rng.uniform(np.maximum(most[:, 0], -math.pi), np.minimum(most[:, 1], math.pi))
         near = float(rng.choice([0.0, 1e-9, 10.0 ** rng.uniform(-9.0, -2.0)]))
         if start == "joint limit":
             ends = rng.random(arm.n) < 0.3
