@@ -1,7 +1,8 @@
 """Builds the pictures of the arms (assets/meshes) from the dimensions in their files: `python -m assets.build_meshes`.
 
 Each link is a GLB in the link's joint frame (z = joint axis, q = 0) [m], made of surfaces of revolution: drums for the joint
-housings, lids on their outer ends, a tapered tube along x where the link is long. The same file gives the same bytes.
+housings, lids on their outer ends, a tapered tube along x where the link is long. An arm without an outline is drawn as its
+collision shapes, with a ring where one link meets the next. The same file gives the same bytes.
 """
 
 import sys
@@ -13,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.files.library import ASSETS, load_arm, robots
-from sim.arm.arm_file import Arm
-from sim.arm.frames import link_transform, rotation, transform
+from sim.arm.arm_file import Arm, Outline
+from sim.arm.frames import hulls, link_transform, placements, rotation, transform, z_turned_to
 
 Array = NDArray[np.float64]
 Profile = list[tuple[float, float]]
@@ -161,7 +162,7 @@ def screws(picture: Picture, pose: Array, circle: float, radius: float, height: 
 
 def foot(arm: Arm) -> Picture:
     """The fixed base: foot with screws, housing of the first joint, cable socket."""
-    picture, outline = Picture(), arm.outline
+    picture, outline = Picture(), _outline(arm)
     radius, wide, seam = outline.housing_radius[0], outline.foot_radius, outline.seam[0]
     upright = np.eye(4)
     picture.lathe("body", drum(wide, 0.0, 0.2 * radius, 0.001, 0.06 * radius), upright)
@@ -182,7 +183,7 @@ def foot(arm: Arm) -> Picture:
 
 def knee(arm: Arm, k: int) -> Picture:
     """A link that turns the axis: a neck about its own joint's axis into the housing of the next joint."""
-    picture, outline = Picture(), arm.outline
+    picture, outline = Picture(), _outline(arm)
     inner, outer = outline.housing_radius[k], outline.housing_radius[k + 1]
     centre, seam = arm.chain.d[k], outline.seam[k]
     collar(picture, np.eye(4), inner, seam)
@@ -196,7 +197,7 @@ def knee(arm: Arm, k: int) -> Picture:
 
 def beam(arm: Arm, k: int) -> Picture:
     """A long link: housings of its own and the next joint, a tapered tube between them."""
-    picture, outline = Picture(), arm.outline
+    picture, outline = Picture(), _outline(arm)
     z, middle = outline.tube_offset[k], outline.tube_radius[k]
     near, far = outline.housing_radius[k], outline.housing_radius[k + 1]
     a, ahead = arm.chain.a[k], link_transform(arm, k)
@@ -224,7 +225,7 @@ def _sleeve(radius: float, low: float, high: float) -> Profile:
 
 def wrist(arm: Arm, k: int) -> Picture:
     """The last link: a short drum and the tool flange with its bolt circle and connector."""
-    picture, outline = Picture(), arm.outline
+    picture, outline = Picture(), _outline(arm)
     radius, disc, seam = outline.housing_radius[k], outline.flange_radius, outline.seam[k]
     face = arm.chain.d[k]
     flange = min(disc, 0.98 * radius)
@@ -247,8 +248,41 @@ def wrist(arm: Arm, k: int) -> Picture:
     return picture
 
 
+def _outline(arm: Arm) -> Outline:
+    assert arm.outline is not None
+    return arm.outline
+
+
+def capsule(radius: float, length: float) -> Profile:
+    """A capsule whose axis runs from 0 to `length`."""
+    around = np.linspace(0.0, np.pi / 2, 9)[1:-1]
+    lower = [(radius * np.sin(t), -radius * np.cos(t)) for t in around]
+    upper = [(r, length - z) for r, z in reversed(lower)]
+    return [(0.0, -radius), *lower, (radius, 0.0), (radius, length), *upper, (0.0, length + radius)]
+
+
+def shaped(arm: Arm, k: int) -> Picture:
+    """A link as its collision shapes, -1 the foot; at its joint a ring, at the end of the last the flange."""
+    picture, own = Picture(), [shape for shape in hulls(arm) if shape.link == k]
+    for shape in own:
+        start, way = np.array(shape.start), np.subtract(shape.end, shape.start)
+        length = float(np.linalg.norm(way))
+        pose = transform(z_turned_to(way), start)
+        picture.lathe("body" if k < 0 or k % 2 == 0 else "tube", capsule(shape.radius, length), pose)
+    if k >= 0:
+        before = [shape for shape in hulls(arm) if shape.link == k - 1]
+        wide = max(shape.radius for shape in [*own, *before])
+        picture.lathe("lid", drum(1.02 * wide, -0.006, 0.006, 0.001, 0.001), np.eye(4))
+    if k == arm.n - 1:
+        face = placements(arm)[-1]
+        picture.lathe("steel", _disc(0.0315, -0.006, 0.0), face)
+    return picture
+
+
 def pictures(arm: Arm) -> dict[str, Picture]:
     """The pictures of an arm by link: `FOOT`, then each link by its joint's name."""
+    if arm.outline is None:
+        return {name: shaped(arm, k) for k, name in enumerate([FOOT, *arm.chain.joints], -1)}
     built = {FOOT: foot(arm)}
     for k, name in enumerate(arm.chain.joints):
         shape = wrist if k == arm.n - 1 else beam if arm.chain.a[k] else knee

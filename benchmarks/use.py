@@ -61,7 +61,7 @@ class Result(NamedTuple):
 def free_way(device: Simulation, rng: np.random.Generator) -> np.ndarray | None:
     """A direction in W in which the flange can go for `WAY` by the model's kinematics; None when 20 draws found none."""
     dynamics, q0 = device.dynamics, device.plant.q.copy()
-    limits, smallest = np.array(device.arm.limits.position), smallest_singular(device.arm)
+    (low, high), smallest = np.array(device.arm.limits.ends).T, smallest_singular(device.arm)
     base = device.plant.data.xmat[device.plant.model.body("foot").id].reshape(3, 3)
     steps = 30
     for _ in range(20):
@@ -70,7 +70,7 @@ def free_way(device: Simulation, rng: np.random.Generator) -> np.ndarray | None:
         q = q0.copy()
         for _ in range(steps):
             jacobian = dynamics.update(q)[2]
-            if np.linalg.svd(jacobian, compute_uv=False)[-1] < smallest or np.any(np.abs(q) > limits - 0.2):
+            if np.linalg.svd(jacobian, compute_uv=False)[-1] < smallest or np.any((q < low + 0.2) | (q > high - 0.2)):
                 break
             q = q + np.linalg.pinv(jacobian[:3]) @ direction * WAY / steps
         else:

@@ -66,7 +66,7 @@ class Supervisor:
         rated: tuple[float, ...] | None = None,
         borders: tuple[AnyBorder, ...] = (),
         frames: Mapping[str, Pose] | None = None,
-        ranges: tuple[float, ...] | None = None,
+        ranges: tuple[tuple[float, float], ...] | None = None,
         speeds: tuple[float, ...] | None = None,
         equipment: Equipment | None = None,
         sensor: SensorSpec = USUAL,
@@ -80,7 +80,7 @@ class Supervisor:
             rated: torque of each joint, of which some limits are shares [N·m]; None: 100 N·m each.
             borders: walls and areas; `pendant.walls.definitions.problem` has found nothing.
             frames: poses X_BR of what they lie in, apart from the base and the arm's own parts.
-            ranges: largest angle of each joint either way [rad]; None: joints turn without end.
+            ranges: smallest and largest angle of each joint [rad]; None: joints turn without end.
             speeds: that each joint is made for [rad/s]; None: any.
             equipment: what is at the flange, and the tools to choose from; None: nothing.
             sensor: what is known of the flange force/torque sensor.
@@ -99,12 +99,12 @@ class Supervisor:
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
         self.containment = Containment(borders, frames or {})
-        endless = (math.inf,) * n_joints
-        zones = JointZones(rated, ranges or endless)
+        ranges = ranges or ((-math.inf, math.inf),) * n_joints
+        zones = JointZones(rated, ranges)
         self._monitor = ContactMonitor(sensor)
         self._free = FreeDrive(self._joints, rated, self.containment, zones, sensor=sensor)
         self._robot = Robot(self._free, self._sequencer)
-        rating = ArmRating(self._joints, ranges or endless, speeds or endless)
+        rating = ArmRating(self._joints, ranges, speeds or (math.inf,) * n_joints)
         self._safety = SafetyInputs(self._robot, rating)
         self._run = ProgramRun(self._robot, self._mean, n_joints, self.containment)
         self._tooling = Tooling(equipment or Equipment())

@@ -9,7 +9,11 @@ import numpy as np
 
 from sim.arm.arm_file import Arm, Sourced
 from sim.arm.chain import chain
+from sim.arm.frames import placements
 from sim.sensing.sensor_drift import BOUND, most
+
+SHORTEST = 1e-6
+"""Length below which an axis or a quaternion has no direction."""
 
 LONGEST = 4.0
 """Times its reach that an arm's links are long end to end, at most; the shipped arms 1.4 to 1.8 times."""
@@ -29,7 +33,8 @@ def _lengths(arm: Arm) -> list[Problem]:
     n = arm.n
     c, m, t, f, o = arm.chain, arm.motors, arm.transmissions, arm.frictions, arm.outline
     lists: dict[str, Sequence[object]] = {
-        **{f"chain.{name}": getattr(c, name) for name in ("a", "d", "alpha", "home")},
+        **{f"chain.{name}": getattr(c, name) for name in (("origins",) if c.origins else ("a", "d", "alpha"))},
+        "chain.home": c.home,
         **{f"masses.{name}": getattr(arm.masses, name) for name in ("mass", "com")},
         "inertias.tensor": arm.inertias.tensor,
         **{f"limits.{name}": getattr(arm.limits, name) for name in ("position", "speed", "acceleration", "torque")},
@@ -38,8 +43,9 @@ def _lengths(arm: Arm) -> list[Problem]:
         **{f"transmissions.{name}": getattr(t, name) for name in ("hysteresis_stiffness", "hysteresis_yield")},
         **{f"frictions.{name}": getattr(f, name) for name in ("torque", "breakaway", "load", "presliding")},
         **{f"thermals.{name}": getattr(arm.thermals, name) for name in ("capacity", "resistance")},
-        **{f"outline.{name}": getattr(o, name) for name in ("seam", "housing_radius", "tube_offset", "tube_radius")},
     }
+    if o is not None:
+        lists |= {f"outline.{name}": getattr(o, name) for name in ("seam", "housing_radius", "tube_offset", "tube_radius")}
     rows = {
         **{f"masses.com[{k}]": (row, 3) for k, row in enumerate(arm.masses.com)},
         **{f"inertias.tensor[{k}]": (row, 6) for k, row in enumerate(arm.inertias.tensor)},
@@ -47,13 +53,39 @@ def _lengths(arm: Arm) -> list[Problem]:
         **{f"shapes[{k}].start": (shape.start, 3) for k, shape in enumerate(arm.shapes)},
         **{f"shapes[{k}].end": (shape.end, 3) for k, shape in enumerate(arm.shapes)},
     }
-    found: list[Problem] = []
+    found = _ways(arm)
     for name, value in lists.items():
         if len(value) != n:
             found.append((name, value, f"expected a list of {n}, one a joint"))
     for name, (row, length) in rows.items():
         if len(row) != length:
             found.append((name, row, f"expected a list of {length}"))
+    return found
+
+
+def _ways(arm: Arm) -> list[Problem]:
+    """A chain is given in one way, and its turns and axes have a direction."""
+    c = arm.chain
+    if not c.origins:
+        return [("chain.flange", "given", "expected origins beside it, or none of both")] if c.flange is not None else []
+    found = [
+        (f"chain.{name}", getattr(c, name), "expected nothing beside origins: they say the same")
+        for name in ("a", "d", "alpha")
+        if getattr(c, name)
+    ]
+    if c.flange is None:
+        found.append(("chain.flange", None, "expected the flange in the last link: origins do not say it"))
+    for name, origin in [*((f"origins[{k}]", each) for k, each in enumerate(c.origins)), ("flange", c.flange)]:
+        if origin is None:
+            continue
+        if origin.rpy is not None and origin.quaternion is not None:
+            found.append((f"chain.{name}.quaternion", origin.quaternion, "expected rpy or quaternion, not both"))
+        if origin.axis is not None and name == "flange":
+            found.append(("chain.flange.axis", origin.axis, "expected none: nothing turns there"))
+        for what in ("quaternion", "axis"):
+            given = getattr(origin, what)
+            if given is not None and not math.hypot(*given) > SHORTEST:
+                found.append((f"chain.{name}.{what}", given, "expected a direction, not zeros"))
     return found
 
 
@@ -82,7 +114,7 @@ def _assumed(arm: Arm) -> list[Problem]:
 
 def _reach(arm: Arm) -> list[Problem]:
     """The links can reach that far, and are not so long that another unit must be meant, as millimetres."""
-    stretched = sum(map(math.hypot, arm.chain.a, arm.chain.d))
+    stretched = float(np.linalg.norm(placements(arm)[:, :3, 3], axis=1).sum())
     if arm.reach <= stretched <= LONGEST * arm.reach:
         return []
     allowed = f"expected at most the chain's length end to end, {stretched:.4g} m, and at least a quarter of it"
@@ -95,8 +127,11 @@ def _postures(arm: Arm) -> list[Problem]:
     for k, name in enumerate(c.joints):
         if not name or name in c.joints[:k] or name in ("foot", "flange", "tool"):
             found.append((f"chain.joints[{k}]", name, "expected names that differ, and not foot, flange or tool"))
-        if abs(c.home[k]) > arm.limits.position[k]:
-            found.append((f"chain.home[{k}]", c.home[k], f"expected within ±{arm.limits.position[k]:g} rad"))
+        low, high = arm.limits.ends[k]
+        if not low < high:
+            found.append((f"limits.position[{k}]", [low, high], "expected the smallest angle, then the largest"))
+        elif not low <= c.home[k] <= high:
+            found.append((f"chain.home[{k}]", c.home[k], f"expected within {low:g} .. {high:g} rad"))
     if not 0 <= c.elbow < arm.n:
         found.append(("chain.elbow", c.elbow, f"expected 0 to {arm.n - 1}"))
     return found

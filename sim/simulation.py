@@ -100,7 +100,7 @@ class Simulation:
             arm.n,
             joints=tuple(arm.chain.joints),
             rated=tuple(arm.limits.torque),
-            ranges=tuple(arm.limits.position),
+            ranges=tuple(arm.limits.ends),
             speeds=tuple(arm.limits.speed),
             borders=tuple(scenario.walls),
             frames=known_frames(scenario),

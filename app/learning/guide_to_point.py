@@ -112,11 +112,11 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         arm, scenario = self._prepared.arm, self._prepared.scenario
         self._R_WB = rotation_from_rpy(scenario.mounting)
         self._home = np.array(scenario.posture if scenario.posture is not None else arm.chain.home)
-        self._limit = np.array(arm.limits.position)
+        self._low, self._high = np.array(arm.limits.ends).T
         everywhere = (2.0 * arm.reach,) * 3
         self.observation_space = self._seen = QuantityBox(
             (
-                even("joint_angle", tuple(arm.limits.position), "rad", "output encoders"),
+                even("joint_angle", tuple(max(-low, high) for low, high in arm.limits.ends), "rad", "output encoders"),
                 even("joint_speed", tuple(2.0 * speed for speed in arm.limits.speed), "rad/s", "from the encoders"),
                 even("flange_position", everywhere, "m", "of the flange in W, from the measured angles"),
                 even("flange_velocity", (5.0,) * 3, "m/s", "of the flange in W, from the measured angles"),
@@ -211,7 +211,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         while True:
             if "posture" in given:
                 posture = np.array(convert(list(given["posture"]), list[float], "options"))
-                if posture.shape != self._home.shape or (np.abs(posture) > self._limit).any():
+                if posture.shape != self._home.shape or ((posture < self._low) | (posture > self._high)).any():
                     raise BadInput("options", "posture", given["posture"], f"{arm.n} joint angles within their limits [rad]")
             else:
                 posture = self._within(self._home + rng.uniform(-SPREAD, SPREAD, arm.n))
@@ -228,7 +228,8 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
 
     def _within(self, posture: Array) -> Array:
         """A posture with each joint well within its range."""
-        return np.clip(posture, -0.9 * self._limit, 0.9 * self._limit)
+        middle, half = 0.5 * (self._low + self._high), 0.5 * (self._high - self._low)
+        return np.clip(posture, middle - 0.9 * half, middle + 0.9 * half)
 
     def _free(self, posture: Array) -> str:
         """Put the arm up and go into free-drive; why it was refused, "" where it was not."""

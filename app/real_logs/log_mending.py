@@ -1,5 +1,6 @@
 """What is mended of a log, and told: order, gaps, units, missing speeds. What cannot be is refused in one line."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -139,7 +140,7 @@ def _scale(name: str, columns: dict[str, Array], arm: Arm, told: list[str], *, g
                 columns["t"] = t * factor
                 told.append(f"{words}, by their distance")
                 break
-    if "q" not in given and float(np.abs(q).max()) > 2.0 * max(arm.limits.position):
+    if "q" not in given and float(np.abs(q).max()) > 2.0 * max(map(abs, itertools.chain(*arm.limits.ends))):
         columns["q"] = q * (np.pi / 180.0)
         told.append("angles are degrees, by their range")
     if (
@@ -203,7 +204,8 @@ def _slopes(t: Array, q: Array, starts: tuple[int, ...]) -> Array:
 
 def _refuse_impossible(log: JointLog, arm: Arm) -> None:
     """Numbers that no such arm can have."""
-    for what, values, limits in (("q", log.q, arm.limits.position), ("qd", log.qd, arm.limits.speed)):
+    farthest = [max(-low, high) for low, high in arm.limits.ends]
+    for what, values, limits in (("q", log.q, farthest), ("qd", log.qd, arm.limits.speed)):
         most, allowed = np.quantile(np.abs(values), 0.999, axis=0), 1.5 * np.array(limits)
         wrong = int((most / allowed).argmax())
         if most[wrong] > allowed[wrong]:

@@ -76,8 +76,9 @@ class RobotInterfaces:
         from app.robot_interface.faults.control_channel import ControlChannel
         from app.robot_interface.faults.timed_http import TimedHttp
 
-        if arm.n != JOINTS:
-            raise BadInput("--interfaces", "robot", arm.name, f"an arm of {JOINTS} joints: these protocols know no other")
+        if arm.n != JOINTS or arm.chain.origins:
+            allowed = f"an arm of {JOINTS} joints with Denavit-Hartenberg parameters: these protocols know no other"
+            raise BadInput("--interfaces", "robot", arm.name, allowed)
         self.host, self.ports = host, {name: number + offset for name, number in PORTS.items()}
         self.token = token or secrets.token_urlsafe(16)
         self.peers = Peers()

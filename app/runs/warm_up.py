@@ -42,7 +42,7 @@ def warm_up() -> None:
 def _stream(simulation: Simulation) -> None:
     """A tick of a command that comes again and again."""
     limits, dynamics, tcp, q = simulation.arm.limits, simulation.dynamics, simulation.tcp, simulation.estimate.q
-    most = np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position)
+    most = np.array(limits.speed), np.array(limits.acceleration), np.array(limits.ends).T.copy()
     now, up = Reference(q, np.zeros_like(q), np.zeros_like(q)), (0.0, 0.0, 0.01)
     move = SpeedTool(id=0, speed=up, turning=(0.0, 0.0, 0.0), acceleration=0.1, turning_acceleration=0.1)
     tool, pace = ToolPoint(dynamics, tcp), Pace(simulation.controller.references.meter)

@@ -152,9 +152,9 @@ def _tools(setup: Setup, tool: ToolModel | None, arm: Arm, where: str) -> list[T
 def _check_posture(posture: list[float], arm: Arm, where: str) -> None:
     if len(posture) != arm.n:
         raise BadInput(where, "posture", posture, f"{arm.n} joint angles, {arm.chain.joints[0]} to {arm.chain.joints[-1]}")
-    for i, (angle, limit) in enumerate(zip(posture, arm.limits.position, strict=True)):
-        if abs(angle) > limit:
-            raise BadInput(where, f"posture[{i}]", angle, f"-{limit:g} .. {limit:g} rad ({arm.chain.joints[i]} of {arm.name})")
+    for i, (angle, (low, high)) in enumerate(zip(posture, arm.limits.ends, strict=True)):
+        if not low <= angle <= high:
+            raise BadInput(where, f"posture[{i}]", angle, f"{low:g} .. {high:g} rad ({arm.chain.joints[i]} of {arm.name})")
 
 
 def _check_features(features: dict[str, Literal["on", "off"]], where: str) -> None:

@@ -65,21 +65,22 @@ class Draw:
         if start == "moving" or kind == "stop":
             first, after = self._before(arm, q), int(rng.integers(1, 400))
         share = float(rng.uniform(0.05, 1.0)) if rng.random() < 0.1 else 1.0
-        limits = SpeedLimits(0.25, 0.25, (1.0,) * 6) if rng.random() < 0.1 else None
+        limits = SpeedLimits(0.25, 0.25, (1.0,) * arm.n) if rng.random() < 0.1 else None
         return Drawn(
             name, kind, start, q, tcp, R_FT, first, after, self._moves(arm, kind, q, (tcp, R_FT)), share, limits, rng.random()
         )
 
     def _posture(self, arm: Arm, start: str) -> Array:
-        rng, home, most = self._rng, np.array(arm.chain.home), np.array(arm.limits.position)
+        rng, home, most = self._rng, np.array(arm.chain.home), np.array(arm.limits.ends)
         if start in ("home", "moving"):
             return home + rng.uniform(-0.6, 0.6, arm.n)
-        q = rng.uniform(-math.pi, math.pi, arm.n)
+        q = rng.uniform(np.maximum(most[:, 0], -math.pi), np.minimum(most[:, 1], math.pi))
         near = float(rng.choice([0.0, 1e-9, 10.0 ** rng.uniform(-9.0, -2.0)]))
         if start == "joint limit":
             ends = rng.random(arm.n) < 0.3
             ends[rng.integers(arm.n)] = True
-            q[ends] = (rng.choice([-1.0, 1.0], arm.n) * (most - near))[ends]
+            side = rng.choice([-1.0, 1.0], arm.n)
+            q[ends] = (np.where(side > 0.0, most[:, 1], most[:, 0]) - side * near)[ends]
         elif start == "singular":  # elbow stretched, wrist aligned
             q[int(rng.choice([2, 4]))] = near * float(rng.choice([-1.0, 1.0]))
         return q
@@ -122,7 +123,7 @@ class Draw:
         goal = q + length * way / np.abs(way).max()
         if self._rng.random() < 0.1:
             joint = int(self._rng.integers(arm.n))
-            goal[joint] = math.copysign(arm.limits.position[joint], goal[joint])
+            goal[joint] = arm.limits.ends[joint][1 if goal[joint] >= 0.0 else 0]
         return tuple(goal.tolist())
 
     def _pose(self, p: Array, R: Array, length: float) -> tuple[Array, Array, float]:

@@ -19,7 +19,7 @@ from pendant.program.jog_move import JogMove
 from pendant.program.steps import Move
 from pendant.tick.modes import TICK, Law
 from sim.motion.blend import Blended
-from sim.motion.moves import SHORTEST_STOP, Stop
+from sim.motion.moves import SHORTEST_STOP, Stop, beyond
 from sim.motion.references import References
 from sim.paths.curves import LEVER
 from sim.sensing.calibration import nominal
@@ -79,7 +79,7 @@ class Player:
     def __init__(self, drawn: Drawn, longest: float) -> None:
         self.drawn, self.arm, self._longest = drawn, arm_of(drawn.arm), longest
         limits = self.arm.limits
-        self.speed, self.most, self.position = np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position)
+        self.speed, self.most, self.position = np.array(limits.speed), np.array(limits.acceleration), np.array(limits.ends).T
         self.references = References(
             self.arm, nominal(self.arm), model(drawn.arm), tcp=drawn.tcp.astype(float), R_FT=drawn.R_FT.copy()
         )
@@ -165,7 +165,7 @@ class Player:
                 self._check(fast <= FAST, "joint speed")
                 self._check(steep <= STEEP, "step in speed")
                 self._check(gap <= STEEP, "step in position")
-                self._check(bool((np.abs(q) <= self.position + GRAIN).all()), "range")
+                self._check(bool((beyond(q, self.position) <= GRAIN).all()), "range")
             if self.said is not None and not self.failures:
                 off, turned = apart(self._tool(), self.said)
                 self._check(off <= OFF and turned <= TURNED, "ends elsewhere")
@@ -249,7 +249,7 @@ class Player:
         for _ in range(POINTS + 2):
             q = motion.step(stride).q  # type: ignore[attr-defined]
             self._check(bool((np.abs(q - before) <= FAST * self.speed * stride * TICK + GRAIN).all()), "joint speed of the plan")
-            self._check(bool((np.abs(q) <= self.position + GRAIN).all()), "range of the plan")
+            self._check(bool((beyond(q, self.position) <= GRAIN).all()), "range of the plan")
             before = q
         off, turned = apart(tool_pose(self.arm, before, self.drawn.tcp), self.said)
         self._check(motion.done and off <= OFF and turned <= TURNED, "plan ends elsewhere")

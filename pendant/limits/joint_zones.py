@@ -5,7 +5,10 @@ with it on its way out (`resistance.LimitGuard`), so that nothing kicks; the spr
 """
 
 import math
+from collections.abc import Sequence
 from operator import sub
+
+import numpy as np
 
 from pendant.limits.resistance import LimitGuard, closeness, resisting
 from pendant.limits.settings import JointLimits
@@ -20,19 +23,21 @@ class JointZones:
         pushing: a spring is bent, and may move its joint.
     """
 
-    __slots__ = ("_begin", "_guards", "_inner", "_least", "_ranges", "_rated", "_settings", "pushing", "torque")
+    __slots__ = ("_begin", "_guards", "_half", "_inner", "_least", "_middle", "_rated", "_settings", "pushing", "torque")
 
-    def __init__(self, rated: tuple[float, ...], ranges: tuple[float, ...]) -> None:
+    def __init__(self, rated: tuple[float, ...], ranges: Sequence[tuple[float, float]]) -> None:
         """
         Args:
             rated: torque of each joint [N·m].
-            ranges: largest angle of each joint either way [rad].
+            ranges: smallest and largest angle of each joint [rad]; a joint without end has both infinite.
         """
-        self._rated, self._ranges = rated, ranges
+        self._rated = rated
+        self._middle = np.array([0.5 * (low + high) if math.isfinite(high - low) else 0.0 for low, high in ranges])
+        self._half = tuple([0.5 * (high - low) for low, high in ranges])  # from the middle to both ends [rad]
         self._settings: JointLimits | None = None  # while they hold
-        self._inner: tuple[float, ...] = ()  # where each damping zone begins [rad]
+        self._inner: tuple[float, ...] = ()  # where each damping zone begins, from the middle [rad]
         self._least = 0.0  # where the first of them does
-        self._begin: tuple[float, ...] = ()  # where each stiff zone begins [rad]
+        self._begin: tuple[float, ...] = ()  # where each stiff zone begins, from the middle [rad]
         self._guards: list[LimitGuard | None] = []
         self.torque: tuple[float, ...] = ()
         self.pushing = False
@@ -43,10 +48,10 @@ class JointZones:
         if not settings.on:
             return
         self._settings = settings
-        self._begin = tuple([limit - settings.stiff_zone for limit in self._ranges])
+        self._begin = tuple([limit - settings.stiff_zone for limit in self._half])
         self._inner = tuple([begin - settings.damping_zone for begin in self._begin])
         self._least = min(self._inner)
-        self._guards = [None] * len(self._ranges)
+        self._guards = [None] * len(self._half)
 
     def leave(self) -> None:
         """Nothing is resisted any more."""
@@ -57,7 +62,7 @@ class JointZones:
         settings = self._settings
         if settings is None:
             return
-        angles = estimate.theta.tolist()
+        angles = (estimate.theta - self._middle).tolist()
         near = max(angles) > self._least or min(angles) < -self._least  # seldom, so that the joints need not be looked at
         if not near or max(map(sub, map(abs, angles), self._inner)) <= 0.0:
             if self.torque:
@@ -75,7 +80,7 @@ class JointZones:
         self.torque = tuple(torques)
 
     def _resist(self, joint: int, angle: float, speed: float, settings: JointLimits) -> float:
-        """Torque on one joint [N·m]."""
+        """Torque on one joint [N·m], at an angle from the middle of its range."""
         side, rated = math.copysign(1.0, angle), self._rated[joint]
         distance = abs(angle) - self._begin[joint]
         guard = self._guards[joint]

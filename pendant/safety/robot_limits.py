@@ -66,7 +66,7 @@ class ArmRating(NamedTuple):
     """What the arm's joints are made for, n each."""
 
     names: tuple[str, ...]
-    ranges: tuple[float, ...]  # either way [rad]
+    ranges: tuple[tuple[float, float], ...]  # smallest and largest angle [rad]
     speeds: tuple[float, ...]  # [rad/s]
 
 
@@ -110,15 +110,15 @@ def _speeds(sets: list[JointSpeeds], n: int) -> tuple[float, ...]:
     return tuple([min(getattr(each, f"j{k + 1}", FASTEST) for each in sets) for k in range(n)])
 
 
-def _range(positions: list[JointPositions], ranges: tuple[float, ...]) -> JointRange | None:
+def _range(positions: list[JointPositions], ranges: tuple[tuple[float, float], ...]) -> JointRange | None:
     """What is left of each joint's own range; None where all of it is."""
-    own = [min(end, FURTHEST) for end in ranges]
-    low, high = [-end for end in own], own[:]
+    own = [(max(low, -FURTHEST), min(high, FURTHEST)) for low, high in ranges]
+    low, high = [ends[0] for ends in own], [ends[1] for ends in own]
     for each in positions:
         for k in range(min(len(ranges), SET_JOINTS)):
             low[k] = max(low[k], getattr(each, f"j{k + 1}_min"))
             high[k] = min(high[k], getattr(each, f"j{k + 1}_max"))
-    narrower = any(a > -end or b < end for a, b, end in zip(low, high, own, strict=True))
+    narrower = any((a, b) != ends for a, b, ends in zip(low, high, own, strict=True))
     return JointRange(tuple(low), tuple(high)) if narrower else None
 
 

@@ -31,7 +31,7 @@ class ArmShape:
         joints: pose of each joint's frame (z is its axis) in the one before, B for the first, at q = 0.
         flange: pose of F in the last joint's frame.
         rods: round the links.
-        ranges: largest angle of each joint either way [rad].
+        ranges: smallest and largest angle of each joint [rad].
         elbow: index of the joint whose origin is the elbow.
     """
 
@@ -42,7 +42,7 @@ class ArmShape:
         flange: Pose,
         *,
         rods: tuple[Rod, ...],
-        ranges: tuple[float, ...],
+        ranges: tuple[tuple[float, float], ...],
         elbow: int,
     ) -> None:
         self.names, self.rods, self.elbow = names, rods, elbow

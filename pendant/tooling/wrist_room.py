@@ -67,7 +67,8 @@ class WristRoom:
         way = np.vstack([self._begin, way])
         origins, turns = self.shape.places(way)
         start, end = self.shape.ends(self._rods, origins, turns)
-        gaps, names = [self.shape.ranges - np.abs(way)], [f"the end of the range of {name}" for name in self.shape.names]
+        low, high = self.shape.ranges.T
+        gaps, names = [np.minimum(way - low, high - way)], [f"the end of the range of {name}" for name in self.shape.names]
         radii = np.array([rod.radius for rod in self._rods])
         if self._pairs:
             first, second = (list(side) for side in zip(*self._pairs, strict=True))

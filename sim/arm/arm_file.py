@@ -33,6 +33,10 @@ from pendant.settings.bounds import (
 )
 
 Range = Annotated[float, Meta(ge=0.01, le=100.0)]  # of a joint, each way [rad]
+Sides = Annotated[list[Angle], Meta(min_length=2, max_length=2)]  # smallest and largest angle of a joint [rad]
+Triple = Annotated[list[Offset], Meta(min_length=3, max_length=3)]
+Turn = Annotated[list[Angle], Meta(min_length=3, max_length=3)]  # roll, pitch, yaw about fixed axes [rad]
+Quaternion = Annotated[list[Offset], Meta(min_length=4, max_length=4)]  # wxyz, of any length but 0
 Joints = Annotated[list[Name], Meta(min_length=2, max_length=MOST_JOINTS)]
 Status = Literal["official", "measured", "assumed"]
 
@@ -45,26 +49,44 @@ class Sourced(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     assumed: list[str] = []
 
 
-class ChainParameters(Sourced, frozen=True):
-    """Kinematics, standard Denavit-Hartenberg (link i's frame sits behind joint i: Rz(q) Tz(d) Tx(a) Rx(alpha))."""
+class Origin(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, omit_defaults=True):
+    """A frame in the frame of the link before it, at q = 0; of a joint's link also the axis that it turns about, in its own."""
+
+    xyz: Triple  # [m]
+    rpy: Turn | None = None
+    quaternion: Quaternion | None = None  # in place of rpy; neither: not turned
+    axis: Triple | None = None  # of any length but 0; None: z
+
+
+class ChainParameters(Sourced, frozen=True, omit_defaults=True):
+    """Kinematics, in one of two ways: `a`, `d` and `alpha`, or `origins` and `flange`.
+
+    Standard Denavit-Hartenberg: link i's frame sits behind joint i, Rz(q) Tz(d) Tx(a) Rx(alpha), and the last one is the flange.
+    Transforms: link i's frame sits at joint i and turns with it, as URDF has it.
+    """
 
     joints: Joints  # names, base to flange
-    a: list[Offset]  # [m]
-    d: list[Offset]  # [m]
-    alpha: list[Angle]  # [rad]
     elbow: int  # index of the joint whose origin is the elbow
     home: list[Angle]  # default posture [rad]
+    a: list[Offset] = []  # [m]
+    d: list[Offset] = []  # [m]
+    alpha: list[Angle] = []  # [rad]
+    origins: list[Origin] = []  # of each link in the one before, of the first in the base
+    flange: Origin | None = None  # in the last link
 
 
 class Masses(Sourced, frozen=True):
     """Link masses and centres."""
 
     mass: list[LinkMass]  # [kg]
-    com: list[list[Offset]]  # centre of mass in the DH link frame [m]
+    com: list[list[Offset]]  # centre of mass in the link frame [m]
 
 
 class Inertias(Sourced, frozen=True):
-    """Link inertia about the centre of mass: ixx iyy izz ixy ixz iyz [kg·m²], axes of the joint frame (z = joint axis, q = 0)."""
+    """Link inertia about the centre of mass: ixx iyy izz ixy ixz iyz [kg·m²].
+
+    Axes: with Denavit-Hartenberg those of the joint frame (z = joint axis, q = 0), with transforms those of the link frame.
+    """
 
     tensor: list[list[Moment]]
 
@@ -72,10 +94,15 @@ class Inertias(Sourced, frozen=True):
 class ArmLimits(Sourced, frozen=True):
     """Joint limits."""
 
-    position: list[Range]  # ± [rad]
+    position: list[Range | Sides]  # ±, or smallest and largest [rad]
     speed: list[JointSpeed]  # [rad/s]
     acceleration: list[JointAcceleration]  # [rad/s²]
     torque: list[JointTorque]  # at the output [N·m]
+
+    @property
+    def ends(self) -> list[tuple[float, float]]:
+        """Smallest and largest angle of each joint [rad]."""
+        return [(each[0], each[1]) if isinstance(each, list) else (-each, each) for each in self.position]
 
 
 class Motors(Sourced, frozen=True):
@@ -222,7 +249,7 @@ class Outline(Sourced, frozen=True):
 
 
 class Capsule(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A collision shape of a link: a segment with a radius, in the link's joint frame (z = joint axis, q = 0) [m]."""
+    """A collision shape of a link: a segment with a radius [m], in the axes that the tensors have, from the joint's origin."""
 
     link: int  # -1 the base, 0 the first link, ...
     start: list[Offset]
@@ -248,7 +275,7 @@ class Arm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     thermals: Thermals
     sensors: SensorNumbers
     accuracy: Accuracy = ASSUMED_ACCURACY
-    outline: Outline
+    outline: Outline | None = None  # None: pictures show the shapes
     shapes: Annotated[list[Capsule], Meta(max_length=60)]
 
     @property

@@ -11,7 +11,7 @@ import pendant.equipment.tools
 from pendant.tick.pose import Pose, Rotation, Vector, flat
 from pendant.tooling.arm_shape import ArmShape, Rod
 from sim.arm.arm_file import Arm
-from sim.arm.frames import com_in_joint_frame, inertia_matrix, link_transform, skew
+from sim.arm.frames import com_in_joint_frame, hulls, inertia_matrix, placements, skew, tensor_in_joint_frame
 from sim.arm.scenario import Load, ToolModel
 
 Array = NDArray[np.float64]
@@ -67,25 +67,22 @@ class Chain:
 def chain(arm: Arm) -> Chain:
     """The chain that `arm`'s file describes; of the last link the part before the flange sensor's tool-side face."""
     n = arm.n
-    p, R, links = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1)), []
-    behind = np.eye(4)
-    for i in range(n):
-        p[i], R[i] = behind[:3, 3], behind[:3, :3]
-        behind = link_transform(arm, i)
-        links.append(Body(arm.masses.mass[i], com_in_joint_frame(arm, i), inertia_matrix(arm.inertias.tensor[i])))
-    p_flange, R_flange = behind[:3, 3], behind[:3, :3]
+    poses = placements(arm)
+    p, R = poses[:, :3, 3].copy(), poses[:, :3, :3].copy()
+    links = [Body(arm.masses.mass[i], com_in_joint_frame(arm, i), tensor_in_joint_frame(arm, i)) for i in range(n)]
+    p_flange, R_flange = p[n], R[n]
     plate = plate_body(arm)
     links[-1] -= Body(plate.mass, p_flange + R_flange @ plate.com, R_flange @ plate.inertia @ R_flange.T)
-    return Chain(p, R, tuple(links), p_flange, R_flange)
+    return Chain(p[:n], R[:n], tuple(links), p_flange, R_flange)
 
 
 def arm_shape(arm: Arm) -> ArmShape:
     """What the pendant knows of the arm's shape: the same joints and hulls."""
     rigid = chain(arm)
     joints = [Pose(*_plain(p, R)) for p, R in zip(rigid.p, rigid.R, strict=True)]
-    rods = tuple([Rod(hull.link, _vector(hull.start), _vector(hull.end), hull.radius) for hull in arm.shapes])
+    rods = tuple([Rod(hull.link, _vector(hull.start), _vector(hull.end), hull.radius) for hull in hulls(arm)])
     flange = Pose(*_plain(rigid.p_flange, rigid.R_flange))
-    ranges = tuple(arm.limits.position)
+    ranges = tuple(arm.limits.ends)
     return ArmShape(tuple(arm.chain.joints), joints, flange, rods=rods, ranges=ranges, elbow=arm.chain.elbow)
 
 

@@ -1,11 +1,12 @@
-"""Frames and tensors of a Denavit-Hartenberg chain. Pure numpy; transforms are (4, 4), quaternions wxyz."""
+"""Frames and tensors of an arm's chain. Pure numpy; transforms are (4, 4), quaternions wxyz."""
 
 import math
 
+import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.arm.arm_file import Arm
+from sim.arm.arm_file import Arm, Capsule, Origin
 
 Array = NDArray[np.float64]
 
@@ -85,29 +86,92 @@ def transform(matrix: ArrayLike, position: ArrayLike) -> Array:
     return pose
 
 
-def link_transform(arm: Arm, k: int) -> Array:
-    """Link k's DH frame in its joint frame (4, 4): Tz(d) Tx(a) Rx(alpha).
+def placements(arm: Arm) -> Array:
+    """Where each joint frame sits in the one before, B for the first, and F in the last, at q = 0: (n + 1, 4, 4).
 
-    The joint frame of link k has z along joint k's axis and turns with the link. The DH frame of link k is where the joint
-    frame of link k + 1 is while q_{k+1} = 0; that of the last link is the flange F.
+    The joint frame of link k has z along joint k's axis and turns with the link.
     """
-    return transform(rotation(0, arm.chain.alpha[k]), [arm.chain.a[k], 0.0, arm.chain.d[k]])
+    chain = arm.chain
+    if not chain.origins:
+        behind = [transform(rotation(0, alpha), [a, 0.0, d]) for a, d, alpha in zip(chain.a, chain.d, chain.alpha, strict=True)]
+        return np.array([np.eye(4), *behind])
+    assert chain.flange is not None  # sim.arm_problems sees to it
+    found, before = [], np.eye(3)
+    for k, origin in enumerate([*chain.origins, chain.flange]):
+        own = file_axes(arm, k).T if k < arm.n else np.eye(3)
+        found.append(transform(before.T @ _turn(origin) @ own, before.T @ origin.xyz))
+        before = own
+    return np.array(found)
+
+
+def _turn(origin: Origin) -> Array:
+    """Orientation of a frame in the one before it (3, 3)."""
+    return rotation_from_rpy(origin.rpy or [0.0] * 3) if origin.quaternion is None else matrix_from_quaternion(origin.quaternion)
+
+
+def link_transform(arm: Arm, k: int) -> Array:
+    """What comes behind link k in its joint frame (4, 4): the joint frame of link k + 1 while q_{k+1} = 0; of the last link F."""
+    return placements(arm)[k + 1]
+
+
+def file_axes(arm: Arm, k: int) -> Array:
+    """Orientation (3, 3) in link k's joint frame of the axes that the arm's file has for it: its tensor, its shapes.
+
+    Theirs are the joint frame's own with Denavit-Hartenberg; a link of a chain of transforms may turn about any axis, which the
+    shortest turn takes to z.
+    """
+    axis = arm.chain.origins[k].axis if arm.chain.origins else None
+    return np.eye(3) if axis is None else z_turned_to(axis).T
+
+
+def z_turned_to(direction: ArrayLike) -> Array:
+    """The shortest turn (3, 3) that takes z to a direction (3,) of any length but 0."""
+    way = np.asarray(direction, dtype=float)
+    x, y, z = way / np.linalg.norm(way)
+    return matrix_from_quaternion((1.0 + z, -y, x, 0.0) if z > -1.0 else (0.0, 1.0, 0.0, 0.0))
+
+
+def link_frame(arm: Arm, k: int) -> Array:
+    """Frame in which the arm's file gives link k's centre of mass, in its joint frame (4, 4)."""
+    return transform(file_axes(arm, k), np.zeros(3)) if arm.chain.origins else link_transform(arm, k)
 
 
 def joint_frames(arm: Arm, q: ArrayLike) -> Array:
     """Joint frames of all links and the flange in B at joint angles q (n,) [rad]: (n + 1, 4, 4)."""
-    frames = np.empty((arm.n + 1, 4, 4))
-    pose = np.eye(4)
+    frames = placements(arm)
+    pose = frames[0]
     for k, angle in enumerate(np.asarray(q, dtype=float)):
         frames[k] = pose @ transform(rotation(2, angle), np.zeros(3))
-        pose = frames[k] @ link_transform(arm, k)
+        pose = frames[k] @ frames[k + 1]
     frames[arm.n] = pose
     return frames
 
 
 def com_in_joint_frame(arm: Arm, k: int) -> Array:
-    """Centre of mass of link k in its joint frame (3,) [m]; the arm's file gives it in the DH frame."""
-    return (link_transform(arm, k) @ [*arm.masses.com[k], 1.0])[:3]
+    """Centre of mass of link k in its joint frame (3,) [m]."""
+    return (link_frame(arm, k) @ [*arm.masses.com[k], 1.0])[:3]
+
+
+def tensor_in_joint_frame(arm: Arm, k: int) -> Array:
+    """Inertia of link k about its centre of mass, axes of its joint frame (3, 3) [kg·m²]."""
+    tensor = inertia_matrix(arm.inertias.tensor[k])
+    if not arm.chain.origins:
+        return tensor
+    R = file_axes(arm, k)
+    return R @ tensor @ R.T
+
+
+def hulls(arm: Arm) -> list[Capsule]:
+    """The arm's collision shapes, in the joint frames of their links."""
+    if not arm.chain.origins:
+        return arm.shapes
+
+    def turned(shape: Capsule) -> Capsule:
+        R = file_axes(arm, shape.link)
+        start, end = (R @ point for point in (shape.start, shape.end))
+        return msgspec.structs.replace(shape, start=start.tolist(), end=end.tolist())
+
+    return [turned(shape) if shape.link >= 0 else shape for shape in arm.shapes]
 
 
 def inertia_matrix(tensor: ArrayLike) -> Array:

@@ -22,6 +22,7 @@ import math
 import numpy as np
 
 from sim.arm.arm_file import Arm
+from sim.arm.frames import hulls
 from sim.collisions.link_force import since_rest
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
@@ -42,7 +43,7 @@ ON_AXIS = 1e-3  # so near a shape lies to a joint's axis that is its housing [m]
 def hit_shapes(arm: Arm) -> Record:
     """The shapes that a contact with a link may press on, for `hit_parts`. The elbow's housing is the elbow on either side."""
     elbow = arm.chain.elbow
-    shapes = [shape for shape in arm.shapes if shape.link > 0]
+    shapes = [shape for shape in hulls(arm) if shape.link > 0]
     count = max(len(shapes), 1)
     made = record(link=f"{count}i8", part=f"{count}i8", start=(count, 3), way=(count, 3), length=(count,), count="i8")
     own = made[0]

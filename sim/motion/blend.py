@@ -73,7 +73,7 @@ class Blended:
         first: on its way to its end, or to a stop.
         second: planned from there.
         corner: where that is (n,) [rad].
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
 
     Attributes:
         goal: where the second ends (n,) [rad].
@@ -139,5 +139,6 @@ class Blended:
         speed = np.abs(np.diff(both, axis=0)) / step / limits[0]
         acceleration = np.abs(np.diff(both, 2, axis=0)) / step**2
         alone = np.abs(np.diff(one, 2, axis=0)) / step**2
-        outermost = np.abs(both) / limits[2]
+        low, high = limits[2]
+        outermost = np.abs(both - 0.5 * (low + high)) / (0.5 * (high - low))
         return max(float(speed.max()), float((acceleration / np.maximum(alone, limits[1])).max()), float(outermost.max()))

@@ -108,7 +108,7 @@ class Compliance(LineStream):
     Args:
         now: where the reference is.
         tool: kinematics of the tool centre point.
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
         pace: knows the speeds of tool and elbow.
 
     Raises:

@@ -38,7 +38,7 @@ class ForceTrajectory:
     """
 
     def __init__(self, q: Array, move: ApplyForce, tool: ToolPoint, *, position: Array) -> None:
-        """`position` are the joints' limits (±) (n,) [rad]."""
+        """`position` are the joints' smallest and largest angles (2, n) [rad]."""
         if tool.singular(q):
             raise MoveRefused("force: singular here; use another posture")
         self._wanted = math.hypot(*move.force)

@@ -11,7 +11,7 @@ from pendant.program.steps import Move
 from pendant.safety.robot_limits import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.braking.workspace_keeper import WorkspaceKeeper
-from sim.motion.moves import MoveRefused, Reference, turning_points
+from sim.motion.moves import MoveRefused, Reference, beyond, turning_points
 from sim.motion.pace import Pace
 from sim.motion.tool_trajectory import BEND, SPACING
 from sim.paths.curves import LEVER, NO_WAY, Straight
@@ -72,7 +72,7 @@ class JogTrajectory:
         move: what is jogged.
         tool: kinematics of the tool centre point.
         R_FT: orientation of the tool in F (3, 3).
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
         pace: knows the speeds of tool and elbow.
 
     Attributes:
@@ -95,9 +95,10 @@ class JogTrajectory:
             self._line = None
             self._most = JOINT_SHARE * float(limits[0][move.axis])
             self._joints.rate[move.axis] = move.sign
-            end = max(float(limits[2][move.axis] - move.sign * q[move.axis]), 0.0)
+            last = float(limits[2][1 if move.sign > 0 else 0, move.axis])
+            end = max(move.sign * (last - float(q[move.axis])), 0.0)
             if end < length:
-                self._why = _ended(move.axis, move.sign * float(limits[2][move.axis]))
+                self._why = _ended(move.axis, last)
             pair = np.array([1.0, 1.0])
             acceleration = JOINT_SHARE * float(limits[1][move.axis])
             self._places = _slowing(Places(np.array([0.0, min(end, length)]), self._most**2 * pair, acceleration * pair))
@@ -143,7 +144,7 @@ class JogTrajectory:
         self._s, self._rate = (places[-1].item() if rate == left / TICK else s + step), rate
         if self._line is None:
             q = joints.q + step * joints.rate
-            self._joints = joints._replace(q=np.minimum(np.maximum(q, -self._limits[2]), self._limits[2]))
+            self._joints = joints._replace(q=np.minimum(np.maximum(q, self._limits[2][0]), self._limits[2][1]))
         else:
             self._joints = self._tool.follow(self._line.record, self._s, joints, step)
         q, along, bend, _, _ = self._joints
@@ -160,8 +161,9 @@ class JogTrajectory:
             ahead = self._follow(s + step, joints, step)
             against, good, bad = self._against(ahead), 0.0, step
             way, turned = turning_points(joints, ahead, step)
-            if not against and (np.abs(turned) > self._limits[2]).any():
-                joint = int(np.argmax(np.abs(turned) - self._limits[2]))
+            out = beyond(turned, self._limits[2])
+            if not against and (out > 0.0).any():
+                joint = int(np.argmax(out))
                 against, bad = _ended(joint, float(turned[joint])), float(way[joint])
             if against:
                 for _ in range(HALVINGS):
@@ -186,9 +188,9 @@ class JogTrajectory:
         """Why the way cannot be gone to there, or ""."""
         if joints.singular or not joints.reached:
             return "singular ahead; jog a joint, or back"
-        beyond = np.abs(joints.q) - self._limits[2]
-        joint = int(np.argmax(beyond))
-        return _ended(joint, float(joints.q[joint])) if beyond[joint] > 0.0 else ""
+        out = beyond(joints.q, self._limits[2])
+        joint = int(np.argmax(out))
+        return _ended(joint, float(joints.q[joint])) if out[joint] > 0.0 else ""
 
     def _allowed(self, found: list[tuple[float, Followed]], acceleration: float) -> Places:
         """What the joints allow at each place. A quarter of their acceleration is for that along the way, or half in braking."""

@@ -78,9 +78,9 @@ def stop_time(dynamics: Dynamics, q: Array, qd: Array, *, rotor: Array, torque: 
 
 
 def stop_room(now: Reference, position: Array) -> float:
-    """Time [s] that a stop may take so that every joint comes to rest within ±`position` (n,) [rad]: it goes half of qd T."""
+    """Time [s] that a stop may take so that every joint comes to rest within `position` (2, n) [rad]: it goes half of qd T."""
     size = np.abs(now.qd)
-    left = np.maximum(position - np.sign(now.qd) * now.q, 0.0)
+    left = np.maximum(np.where(now.qd > 0.0, position[1] - now.q, now.q - position[0]), 0.0)
     return float(np.min(2.0 * left[size > 0.0] / size[size > 0.0], initial=math.inf))
 
 
@@ -105,7 +105,7 @@ class Strength(NamedTuple):
 
         Args:
             now: where they are, and how fast.
-            limits: their speed, acceleration and position (±), each (n,).
+            limits: their speed and acceleration (n,), and their smallest and largest angles (2, n).
             changing: acceleration with which they go on until they brake (n,) [rad/s²].
         """
         q, qd, _ = now
@@ -116,9 +116,10 @@ class Strength(NamedTuple):
             return f"joint {joint + 1} moves at {fast[joint]:.2f} rad/s, allowed {speed[joint]:.2f}"
         length = max(SHORTEST_STOP, stop_time(self.dynamics, q, qd, rotor=self.rotor, torque=self.torque))
         stop = q + qd * (0.5 * length + REACTION)
-        joint = int(np.argmax(np.abs(stop) / position))
-        if abs(stop[joint]) > position[joint]:
-            return f"joint {joint + 1} would stop at {stop[joint]:.2f} rad, allowed ±{position[joint]:.4f}"
+        out = beyond(stop, position)
+        joint = int(np.argmax(out))
+        if out[joint] > 0.0:
+            return f"joint {joint + 1} would stop at {stop[joint]:.2f} rad, allowed {_span(position, joint)}"
         return ""
 
     def left(self, references: Iterable[Reference]) -> float:
@@ -200,8 +201,18 @@ def turning_points(joints: Followed, ahead: Followed, step: float) -> tuple[Arra
 
 
 def check_range(q: Array, position: Array, move: str) -> None:
-    """Raise MoveRefused where a joint would leave ±`position` [rad]; `move` is the kind of move."""
-    beyond = np.abs(q) - position
-    joint = int(np.argmax(beyond))
-    if beyond[joint] > 0.0:
-        raise MoveRefused(f"{move}: joint {joint + 1} would reach {q[joint]:.4f} rad, allowed ±{position[joint]:.4f}")
+    """Raise MoveRefused where a joint would leave `position` (2, n) [rad]; `move` is the kind of move."""
+    out = beyond(q, position)
+    joint = int(np.argmax(out))
+    if out[joint] > 0.0:
+        raise MoveRefused(f"{move}: joint {joint + 1} would reach {q[joint]:.4f} rad, allowed {_span(position, joint)}")
+
+
+def beyond(q: Array, position: Array) -> Array:
+    """How far each joint is beyond the nearer end of its range `position` (2, n), less than 0 inside (n,) [rad]."""
+    return np.maximum(q - position[1], position[0] - q)
+
+
+def _span(position: Array, joint: int) -> str:
+    low, high = position[:, joint]
+    return f"±{high:.4f}" if low == -high else f"{low:.4f} .. {high:.4f}"

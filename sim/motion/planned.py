@@ -36,7 +36,7 @@ class JointTrajectory:
         limits: tuple[Array, Array, Array],
         strength: Strength | None = None,
     ) -> None:
-        """`limits` are the joints' speed, acceleration and position (±), each (n,); without `strength` they have any torque.
+        """`limits`: the joints' speed and acceleration (n,), smallest and largest angle (2, n); no `strength`: any torque.
 
         Raises:
             MoveRefused: the target is out of range, or the time is too short.

@@ -39,7 +39,7 @@ class Planner:
     Args:
         tool: kinematics of the tool centre point.
         R_FT: its orientation in F (3, 3).
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
         strength: what the joints can give.
         pace: knows the speeds of tool and elbow.
     """

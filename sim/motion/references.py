@@ -58,7 +58,7 @@ class References:
     def __init__(self, arm: Arm, constants: JointConstants, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
         self._dynamics, self._tool, self._R_FT = dynamics, ToolPoint(dynamics, tcp), R_FT
-        self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
+        self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.ends).T.copy())
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * constants.rotor_inertia, np.array(limits.torque)
         self._strength = Strength(dynamics, self._rotor, self._torque)
         self.meter = MotionMeter(dynamics, tcp, self._strength.braking())

@@ -28,7 +28,7 @@ class JointStream:
 
     Args:
         now: where the reference is.
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
         pace: knows the speeds of tool and elbow.
 
     Attributes:
@@ -82,7 +82,8 @@ class JointStream:
         """Whether a joint that is wanted to go on has come to the end of its range; all can stand a tick later."""
         if (np.abs(self._qd) > self._limits[1] * TICK).any():
             return False
-        left = self._limits[2] - np.sign(wanted) * self._q
+        low, high = self._limits[2]
+        left = np.where(wanted > 0.0, high - self._q, self._q - low)
         at_end = (np.abs(wanted) > SLOWEST) & (left <= 2.0 * TICK * np.abs(self._qd))
         if not at_end.any():
             return False
@@ -154,7 +155,7 @@ class LineStream(JointStream):
     Args:
         now: where the reference is.
         tool: kinematics of the tool centre point.
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
         pace: knows the speeds of tool and elbow.
 
     Raises:
@@ -180,7 +181,7 @@ class ToolStream(LineStream):
         now: where the reference is.
         tool: kinematics of the tool centre point.
         R_FT: its orientation in F (3, 3).
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
         pace: knows the speeds of tool and elbow.
 
     Raises:

@@ -37,7 +37,7 @@ class ToolTrajectory:
         path: of the tool centre point.
         tool: its kinematics; a tool that is changed on the way counts from the next motion on.
         what: the kind of move.
-        limits: the joints' speed, acceleration and position (±), each (n,).
+        limits: the joints' speed and acceleration (n,), and their smallest and largest angles (2, n).
         strength: what the joints can give; None: any torque.
 
     Attributes:

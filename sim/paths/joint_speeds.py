@@ -22,14 +22,14 @@ def shares(q, qd, limits):
     Args:
         q: angles (n,) [rad].
         qd: speeds (n,) [rad/s].
-        limits: speed, acceleration and position (±), each (n,).
+        limits: speed and acceleration (n,), smallest and largest angle (2, n).
     """
     speed, acceleration, position = limits
     time, rate, fast = math.inf, math.inf, math.inf
     for i in range(q.size):
         size = abs(qd[i])
         if size > SLOWEST:
-            left = position[i] - q[i] if qd[i] > 0.0 else position[i] + q[i]
+            left = position[1, i] - q[i] if qd[i] > 0.0 else q[i] - position[0, i]
             time = min(time, left / size)
             rate = min(rate, acceleration[i] / size)
             fast = min(fast, speed[i] / size)

@@ -11,7 +11,7 @@ import numpy as np
 
 from sim.arm.arm_file import Arm, ForceTorque
 from sim.arm.chain import Body, chain, load_body, plate_body, tool_body
-from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.arm.frames import hulls, quaternion_from_matrix, rotation_from_rpy
 from sim.arm.scenario import Fingers, Load, Scenario
 from sim.gripping.finger_shape import FINGERS, finger_poses, finger_size, palm_length
 from sim.plant.joint_friction import Friction
@@ -216,7 +216,7 @@ def _add_sensor(spec: mujoco.MjSpec, name: str, kind: mujoco.mjtSensor, *, site:
 
 def _add_shapes(spec: mujoco.MjSpec, arm: Arm, scenario: Scenario) -> None:
     """Collision shapes, only ever used in explicit pairs with world objects."""
-    for k, shape in enumerate(arm.shapes):
+    for k, shape in enumerate(hulls(arm)):
         body = spec.body("foot" if shape.link < 0 else arm.chain.joints[shape.link])
         geom = body.add_geom(name=f"shape/{k}", type=mujoco.mjtGeom.mjGEOM_CAPSULE, contype=0, conaffinity=0)
         geom.fromto = [*shape.start, *shape.end]

@@ -10,9 +10,10 @@ import pytest
 from app.files.library import ASSETS, load_arm, robots
 from assets.build_meshes import FOOT, build, pictures
 from sim.arm.arm_file import Arm
-from sim.arm.frames import link_transform
+from sim.arm.frames import hulls, link_transform
 
 ARMS = {name: load_arm(name) for name in robots()}
+OUTLINED = [name for name, arm in ARMS.items() if arm.outline is not None]
 PICTURES = {name: pictures(arm) for name, arm in ARMS.items()}
 
 
@@ -92,22 +93,25 @@ def test_every_surface_is_closed_and_faces_outwards(name: str) -> None:
 def axis_of(arm: Arm, k: int) -> tuple[list[float], np.ndarray]:
     """Where the axis of joint k + 1 passes through the middle of link k, and the pose of that joint's frame, both in link k."""
     ahead = link_transform(arm, k)
+    assert arm.outline is not None
     height = arm.outline.tube_offset[k] if arm.chain.a[k] else arm.chain.d[k]
     return [float(ahead[0, 3]), float(ahead[1, 3]), height], ahead
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", OUTLINED)
 def test_a_link_holds_the_next_joint(name: str) -> None:
     arm = ARMS[name]
+    assert arm.outline is not None
     assert encloses(name, FOOT, [0, 0, 0.5 * arm.outline.seam[0]])
     for k in range(arm.n - 1):
         assert encloses(name, arm.chain.joints[k], axis_of(arm, k)[0])
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", OUTLINED)
 def test_links_meet_at_the_seams(name: str) -> None:
     """Near a joint's axis one link ends, and the next begins, within 2 mm of the seam, on opposite sides of it."""
     arm, links = ARMS[name], [FOOT, *ARMS[name].chain.joints]
+    assert arm.outline is not None
     for k, seam in enumerate(arm.outline.seam):
         before = np.eye(4) if k == 0 else link_transform(arm, k - 1)
         radius = arm.outline.housing_radius[k]
@@ -120,7 +124,7 @@ def test_links_meet_at_the_seams(name: str) -> None:
         assert np.abs(np.array(ends) - seam).max() < 0.0021
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", OUTLINED)
 def test_the_flange_is_where_the_chain_ends(name: str) -> None:
     arm = ARMS[name]
     seen = points(name, arm.chain.joints[-1])
@@ -128,10 +132,26 @@ def test_the_flange_is_where_the_chain_ends(name: str) -> None:
     assert points(name, FOOT)[:, 2].min() == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", [name for name in ARMS if name not in OUTLINED])
+def test_without_an_outline_the_shapes_are_the_picture(name: str) -> None:
+    """Everything that can touch is drawn, in the joint's frame, and the face of the flange is where the chain ends."""
+    arm = ARMS[name]
+    for shape in hulls(arm):
+        link = FOOT if shape.link < 0 else arm.chain.joints[shape.link]
+        start, end = np.array(shape.start), np.array(shape.end)
+        way = (end - start) / np.linalg.norm(end - start)
+        for tip in (start - shape.radius * way, end + shape.radius * way):
+            assert np.linalg.norm(points(name, link) - tip, axis=1).min() < 1e-6
+    face = link_transform(arm, arm.n - 1)
+    seen = (points(name, arm.chain.joints[-1]) - face[:3, 3]) @ face[:3, :3]
+    assert (np.abs(seen[np.hypot(seen[:, 0], seen[:, 1]) > 0.031][:, 2]) < 1e-9).any()
+
+
+@pytest.mark.parametrize("name", OUTLINED)
 def test_collision_shapes_follow_the_picture(name: str) -> None:
     """Capsules round off the edges of the housings; nothing sticks out further than half a housing's radius."""
     arm = ARMS[name]
+    assert arm.outline is not None
     for k, link in enumerate(arm.chain.joints):
         seen = points(name, link)
         outside = np.full(len(seen), np.inf)

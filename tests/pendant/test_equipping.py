@@ -272,7 +272,10 @@ def test_a_hand_that_lets_go_in_time_only_delays() -> None:
     assert cell.kinds().count(Kind.POSTURE_REFUSED) >= 1
 
 
-@pytest.mark.parametrize("shape", [None, ArmShape(("a", "b", "c"), [Pose()] * 3, Pose(), rods=(), ranges=(1.0,) * 3, elbow=1)])
+THREE = ArmShape(("a", "b", "c"), [Pose()] * 3, Pose(), rods=(), ranges=((-1.0, 1.0),) * 3, elbow=1)
+
+
+@pytest.mark.parametrize("shape", [None, THREE])
 def test_an_arm_of_unknown_shape_is_not_turned(shape: ArmShape | None) -> None:
     cell = Cell()
     cell.supervisor._equipping._shape = shape

@@ -9,22 +9,59 @@ from app.files.library import load_arm
 from sim.arm.arm_file import Arm
 from sim.arm_problems import problems
 
-GOOD = load_arm("ur5e")
+GOOD, TRANSFORMS = load_arm("ur5e"), load_arm("iiwa7")
 
 
-def broken(field: str, value: object) -> Arm:
+def broken(field: str, value: object, good: Arm = GOOD) -> Arm:
     """The good arm with one dotted field replaced."""
-    raw: Any = msgspec.to_builtins(GOOD)
+    raw: Any = msgspec.to_builtins(good)
     *path, last = [int(step) if step.isdigit() else step for step in field.split(".")]
     place = raw
     for step in path:
         place = place[step]
-    place[last] = value
+    place[last] = msgspec.to_builtins(value)
     return msgspec.convert(raw, Arm)
 
 
 def test_a_good_arm_has_no_problems() -> None:
     assert problems(GOOD) == []
+    assert problems(TRANSFORMS) == []
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "named", "allowed"),
+    [
+        ("chain.a", [0.0] * 7, "chain.a", "nothing beside origins"),
+        ("chain.flange", None, "chain.flange", "the flange in the last link"),
+        ("chain.flange.axis", [0.0, 0.0, 1.0], "chain.flange.axis", "none"),
+        ("chain.origins", TRANSFORMS.chain.origins[:-1], "chain.origins", "a list of 7"),
+        ("chain.origins.1.axis", [0.0, 0.0, 0.0], "chain.origins[1].axis", "a direction"),
+        ("chain.origins.2.quaternion", [0.0] * 4, "chain.origins[2].quaternion", "a direction"),
+        (
+            "chain.origins.2",
+            {"xyz": [0.0] * 3, "rpy": [0.0] * 3, "quaternion": [1.0, 0.0, 0.0, 0.0]},
+            "chain.origins[2]",
+            "not both",
+        ),
+        ("limits.position.3", [-0.1, -3.0], "limits.position[3]", "the smallest angle, then the largest"),
+        ("limits.position.3", [-3.0, -1.5], "chain.home[3]", "-3 .. -1.5 rad"),
+        ("chain.origins.2.xyz", [0.0, 0.0, 4.0], "reach", "at least a quarter"),
+    ],
+)
+def test_what_is_wrong_with_a_chain_of_transforms_is_named(field: str, value: object, named: str, allowed: str) -> None:
+    found = problems(broken(field, value, TRANSFORMS))
+    assert any(where.startswith(named) and allowed in said for where, _, said in found), found
+
+
+def test_denavit_hartenberg_says_the_flange_itself() -> None:
+    found = problems(broken("chain.flange", {"xyz": [0.0, 0.0, 0.1]}))
+    assert [where for where, _, _ in found] == ["chain.flange"]
+
+
+def test_a_joint_may_turn_further_to_one_side() -> None:
+    sided = broken("limits.position.3", [-3.0, -0.1], TRANSFORMS)
+    assert problems(sided) == []
+    assert sided.limits.ends[2:4] == [(-2.9670597, 2.9670597), (-3.0, -0.1)]
 
 
 @pytest.mark.parametrize(

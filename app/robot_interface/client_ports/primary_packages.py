@@ -100,7 +100,7 @@ def _packed(parts: Sequence[tuple[int, bytes]]) -> bytes:
 
 def _configuration(arm: Arm) -> bytes:
     limits, chain = arm.limits, arm.chain
-    ranges = [value for reach in limits.position for value in (-reach, reach)]
+    ranges = [value for ends in limits.ends for value in ends]
     speeds = [value for pair in zip(limits.speed, limits.acceleration, strict=True) for value in pair]
     defaults = (1.05, 1.4, 0.25, 1.2, arm.reach)  # speed and acceleration of joints [rad/s, rad/s²], of the tool [m/s, m/s²]
     geometry = [*chain.a, *chain.d, *chain.alpha, *([0.0] * 6)]

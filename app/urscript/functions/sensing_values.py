@@ -73,10 +73,10 @@ class Kinematics:
         p, R = _placed(x)
         R_F = R @ R_FT.T
         target = (p - R_F @ at, R_F)
-        reach = np.array(simulation.arm.limits.position)
+        low, high = np.array(simulation.arm.limits.ends).T
         for start in (np.array(near), *_guesses(near)):
             q = _newton(simulation.dynamics, target, start)
-            if q is not None and bool(np.all(np.abs(q) <= reach)):
+            if q is not None and bool(np.all((low <= q) & (q <= high))):
                 return tuple(q.tolist())
         return None
 
@@ -263,4 +263,5 @@ def _tuple(value: Value) -> Value:
 def _within(robot: RobotSide, arm: Kinematics, x: Value) -> bool:
     """Whether a posture, or a pose, is in reach; walls are for hands that guide, and are not asked."""
     q = arm.inverse(pose(x), _tuple(robot.record.get("target_q")), None) if type(x) is PoseValue else numbers(6)(x)
-    return q is not None and all(abs(angle) <= most for angle, most in zip(q, robot.simulation.arm.limits.position, strict=True))
+    ends = robot.simulation.arm.limits.ends
+    return q is not None and all(low <= angle <= high for angle, (low, high) in zip(q, ends, strict=True))

@@ -106,8 +106,8 @@ class JogTab:
         self.pose = Html(gui)
         with gui.add_folder("Joint angles to move to", expand_by_default=False):
             self.sliders = [
-                gui.add_slider(f"{name} [°]", min=-most, max=most, step=0.1, initial_value=round(math.degrees(angle), 1))
-                for name, angle, most in zip(self._names, self._home, _farthest(arm), strict=True)
+                gui.add_slider(f"{name} [°]", min=least, max=most, step=0.1, initial_value=round(math.degrees(angle), 1))
+                for name, angle, (least, most) in zip(self._names, self._home, _farthest(arm), strict=True)
             ]
             self.here = gui.add_button("As the arm is now", color="gray")
         with gui.add_folder("Pose of the tool to move to", expand_by_default=False):
@@ -282,6 +282,7 @@ class JogTab:
         self._loop.desk.stop_jogging()
 
 
-def _farthest(arm: Arm) -> list[float]:
-    """The largest angle of each joint, either way [°]; down to a tenth, which the page shows."""
-    return [math.floor(10.0 * math.degrees(most)) / 10.0 for most in arm.limits.position]
+def _farthest(arm: Arm) -> list[tuple[float, float]]:
+    """Smallest and largest angle of each joint [°]; inwards to a tenth, which the page shows."""
+    ends = [(10.0 * math.degrees(low), 10.0 * math.degrees(high)) for low, high in arm.limits.ends]
+    return [(math.ceil(low) / 10.0, math.floor(high) / 10.0) for low, high in ends]

@@ -9,11 +9,11 @@ from app.files.library import ASSETS, load_arm, load_tool, mesh_path, robots, to
 
 
 def test_shipped_names() -> None:
-    assert robots() == ["ur10e", "ur16e", "ur3e", "ur5e"]
+    assert robots() == ["iiwa7", "ur10e", "ur16e", "ur3e", "ur5e"]
     assert tools() == ["flange", "gripper", "sphere", "two-finger", "vacuum-cup"]
 
 
-@pytest.mark.parametrize("name", ["ur3e", "ur5e", "ur10e", "ur16e"])
+@pytest.mark.parametrize("name", ["iiwa7", "ur3e", "ur5e", "ur10e", "ur16e"])
 def test_an_arm_bears_the_name_of_its_file(name: str) -> None:
     assert load_arm(name).name == name
 
@@ -50,7 +50,9 @@ def test_a_shipped_name_wins_over_a_file(tmp_path: Path, monkeypatch: pytest.Mon
 def test_an_unknown_arm_lists_those_there_are() -> None:
     with pytest.raises(BadInput) as caught:
         load_arm("ur4e")
-    assert str(caught.value) == "robots: robot = ur4e: expected one of ur10e, ur16e, ur3e, ur5e, or the path of a YAML file"
+    assert (
+        str(caught.value) == "robots: robot = ur4e: expected one of iiwa7, ur10e, ur16e, ur3e, ur5e, or the path of a YAML file"
+    )
 
 
 @pytest.mark.parametrize("name", ["", "../robots/ur5e", "ur5e\n", "a\x1b[31mb"])

@@ -14,7 +14,7 @@ from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
-RATED, RANGE = (100.0, 20.0), (3.0, 2.0)
+RATED, RANGE = (100.0, 20.0), ((-3.0, 3.0), (-2.0, 2.0))
 SETTINGS = JointLimits()  # damping zone from 2.85 rad, stiff zone from 2.95 rad, 25 and 5 N·m·s/rad, 2000 and 400 N·m/rad
 
 
@@ -90,7 +90,7 @@ def test_switched_off_left_or_without_limits_nothing_is_resisted() -> None:
     assert not module.pushing
     assert state_of(module) != entered
     assert at(module, (2.99, 1.0), (0.0, 0.0)) == ()
-    endless = JointZones(RATED, (math.inf, math.inf))
+    endless = JointZones(RATED, ((-math.inf, math.inf),) * 2)
     endless.enter(SETTINGS)
     assert at(endless, (1e6, 1.0), (-1e6, 1.0)) == ()
 
@@ -138,3 +138,13 @@ def test_a_joint_that_left_its_zone_while_another_stays_enters_it_as_for_the_fir
     assert at(module, (2.96, 0.0), (1.5, 0.0)) == (0.0, 0.0)
     assert at(module, (2.96, 0.0), (1.9, 0.0)) == (0.0, 0.0)
     assert at(module, (2.96, 0.0), (1.97, 0.0)) == pytest.approx((0.0, -400.0 * 0.02))
+
+
+def test_each_side_has_its_own_end() -> None:
+    """A joint from -3 to -0.1 rad: the same zones as of one within ±1.45 rad, so far from its middle."""
+    beside, middle = JointZones((100.0,), ((-3.0, -0.1),)), JointZones((100.0,), ((-1.45, 1.45),))
+    for module in (beside, middle):
+        module.enter(SETTINGS)
+    for angle in (-2.99, -2.8, -1.55, -0.3, -0.11):
+        assert at(beside, (angle, 0.5)) == pytest.approx(at(middle, (angle + 1.55, 0.5)))
+    assert at(beside, (-0.11, 0.5))[0] < 0.0 <= at(beside, (-2.99, 0.0))[0]

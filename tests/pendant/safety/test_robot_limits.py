@@ -31,7 +31,7 @@ ON, OFF = Inputs(commands=(Command.REDUCED_ON,)), Inputs(commands=(Command.REDUC
 RESET = Inputs(commands=(Command.RESET,))
 NORMAL = SpeedLimits(1.5, 1.5, (6.4832,) * 6, 25.0, 0.4, 0.5)
 REDUCED = SpeedLimits(0.75, 0.75, (6.4832,) * 6, 10.0, 0.3, 0.3)
-ARM = ArmRating(JOINTS, (6.28,) * 6, (3.14,) * 6)
+ARM = ArmRating(JOINTS, ((-6.28, 6.28),) * 6, (3.14,) * 6)
 
 
 def measured(**motion: float) -> Estimate:
@@ -96,7 +96,7 @@ def test_the_range_of_a_joint_is_what_both_leave_of_its_own() -> None:
     normal = {"normal__positions__j1_max": 1.0, "normal__positions__j3_min": -0.5, "reduced__positions__j1_max": 0.5}
     assert limits(**normal).joint_range == JointRange((-6.28, -6.28, -0.5, *[-6.28] * 3), (1.0, *[6.28] * 5))
     assert limits(reduced=True, **normal).joint_range == JointRange((-6.28, -6.28, -0.5, *[-6.28] * 3), (0.5, *[6.28] * 5))
-    endless = robot_limits(Settings().robot_limits, ARM._replace(ranges=(math.inf,) * 6), reduced=False)
+    endless = robot_limits(Settings().robot_limits, ARM._replace(ranges=((-math.inf, math.inf),) * 6), reduced=False)
     assert endless.joint_range is None
     assert pytest.approx(math.radians(363), abs=1e-3) == FURTHEST
 
@@ -222,7 +222,7 @@ def positions(**changes: float) -> Bench:
     ends = {"normal.positions.j1_min": -1.0, "normal.positions.j1_max": 1.0, "reduced.positions.j1_max": 0.5}
     bench = Bench()
     settings = apply(Settings(), {f"robot_limits.{name}": value for name, value in ends.items()})
-    bench.supervisor = Supervisor(settings, 6, joints=JOINTS, ranges=(6.28,) * 6)
+    bench.supervisor = Supervisor(settings, 6, joints=JOINTS, ranges=((-6.28, 6.28),) * 6)
     return bench
 
 

@@ -34,7 +34,7 @@ def behind(k: int) -> Pose:
 def wrist_arm(*, ranges: float = 6.28, rods: tuple[Rod, ...] = RODS) -> ArmShape:
     """Six joints like those of a UR5e."""
     joints = [Pose(), *(behind(k) for k in range(5))]
-    return ArmShape(NAMES, joints, behind(5), rods=rods, ranges=(ranges,) * 6, elbow=2)
+    return ArmShape(NAMES, joints, behind(5), rods=rods, ranges=((-ranges, ranges),) * 6, elbow=2)
 
 
 def placed(

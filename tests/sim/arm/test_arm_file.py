@@ -115,8 +115,8 @@ def test_the_ur5e_is_where_its_urdf_says(seed: int) -> None:
     np.testing.assert_allclose(frames[6], pose, atol=1e-9)  # the flange, for wrist_3 has no turn after d
 
 
-def test_there_are_four_arms() -> None:
-    assert sorted(ARMS) == ["ur10e", "ur16e", "ur3e", "ur5e"]
+def test_there_are_five_arms() -> None:
+    assert sorted(ARMS) == ["iiwa7", "ur10e", "ur16e", "ur3e", "ur5e"]
 
 
 @pytest.mark.parametrize("arm", ARMS.values(), ids=ARMS)
@@ -170,8 +170,8 @@ def test_tensors_are_the_vendors_turned_into_joint_axes(name: str, k: int) -> No
 
 
 def test_upper_arms_turn_hardest_about_axes_across_them() -> None:
-    for arm in ARMS.values():
-        xx, yy, zz, *_ = arm.inertias.tensor[1]
+    for name in VENDOR_TENSORS:
+        xx, yy, zz, *_ = ARMS[name].inertias.tensor[1]
         assert min(yy, zz) > 8 * xx  # the tube runs along x of the joint frame
 
 
@@ -266,7 +266,9 @@ def groups(value: object, path: str = "") -> list[tuple[str, Sourced]]:
 @pytest.mark.parametrize("arm", ARMS.values(), ids=ARMS)
 def test_every_value_says_where_it_comes_from(arm: Arm) -> None:
     found = dict(groups(arm))
-    assert {"chain", "masses", "motors", "frictions", "outline", "sensors.force_torque.force", "sensors.gyro"} <= set(found)
+    assert {"chain", "masses", "motors", "frictions", "sensors.encoders", "sensors.current", "accuracy"} <= set(found)
+    if arm.sensors.force_torque is not None:
+        assert {"outline", "sensors.force_torque.force", "sensors.gyro"} <= set(found)
     for group in found.values():
         assert group.status in ("official", "measured", "assumed")
         assert len(group.source) >= 10

@@ -159,7 +159,7 @@ def test_where_a_joint_would_be_accelerated_more_than_it_may_the_second_waits() 
 
 def test_where_a_joint_would_leave_its_range_the_second_waits() -> None:
     end = np.add(HOME, [0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
-    limits = (LIMITS[0], LIMITS[1], np.add(np.abs(end), [1e-6, 7.0, 7.0, 7.0, 7.0, 7.0]))
+    limits = (LIMITS[0], LIMITS[1], np.outer([-1.0, 1.0], np.add(np.abs(end), [1e-6, 7.0, 7.0, 7.0, 7.0, 7.0])))
     first, second = joints(end, HOME, speed=0.3), joints(HOME, end, speed=3.0)
     rows = begun(first)
     both = Blended(first, second, HOME, limits)

@@ -17,7 +17,7 @@ from sim.paths.tool_point import ToolPoint
 from sim.plant.changes import SensorFault
 from tests.sim.arms import PROBE, UR5E
 from tests.sim.bench import Bench
-from tests.sim.motion.test_moves import POSITION, TCP, model
+from tests.sim.motion.test_moves import RANGE, TCP, model
 
 DOWN = (0.0, 0.0, -15.0)
 
@@ -89,11 +89,11 @@ def test_it_ends_when_the_force_sensor_fails() -> None:
 
 def test_from_a_singular_posture_it_is_refused() -> None:
     with pytest.raises(MoveRefused, match="force: singular here"):
-        ForceTrajectory(np.zeros(6), ApplyForce(force=DOWN), ToolPoint(model(), TCP), position=POSITION)
+        ForceTrajectory(np.zeros(6), ApplyForce(force=DOWN), ToolPoint(model(), TCP), position=RANGE)
 
 
 def test_a_joint_at_its_limit_ends_it() -> None:
     q = np.array(UR5E.chain.home)
-    motion = ForceTrajectory(q, ApplyForce(force=DOWN), ToolPoint(model(), TCP), position=np.abs(q) - 0.01)
+    motion = ForceTrajectory(q, ApplyForce(force=DOWN), ToolPoint(model(), TCP), position=np.outer([-1.0, 1.0], np.abs(q) - 0.01))
     motion.step()
     assert "joint" in motion.problem

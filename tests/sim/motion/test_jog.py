@@ -21,7 +21,7 @@ from tests.sim.laws import dynamics, meter
 HOME = np.array(UR5E.chain.home)
 MODEL = dynamics()
 TCP = np.array([0.0, 0.0, 0.1])
-LIMITS = (np.array(UR5E.limits.speed), np.array(UR5E.limits.acceleration), np.array(UR5E.limits.position))
+LIMITS = (np.array(UR5E.limits.speed), np.array(UR5E.limits.acceleration), np.array(UR5E.limits.ends).T.copy())
 
 
 def jog(frame: str, axis: int, sign: int, length: float = 0.0, q: np.ndarray = HOME) -> JogTrajectory:
@@ -90,12 +90,12 @@ def test_in_reduced_tool_elbow_and_joints_stay_below_its_limits() -> None:
 
 def test_before_the_end_of_its_range_a_joint_comes_to_rest() -> None:
     q = HOME.copy()
-    q[5] = LIMITS[2][5] - 0.3
+    q[5] = LIMITS[2][1, 5] - 0.3
     motion = jog("joint", 5, 1, q=q)
     now = motion.step()
     for _ in range(2000):
         now = motion.step()
-        assert now.q[5] <= LIMITS[2][5]
+        assert now.q[5] <= LIMITS[2][1, 5]
         if motion.problem:
             break
     assert "joint 6 is at the end of its range" in motion.problem

@@ -33,7 +33,8 @@ HOME = np.array(UR5E.chain.home)
 SPEED, ACCELERATION, POSITION = (
     np.array(values) for values in (UR5E.limits.speed, UR5E.limits.acceleration, UR5E.limits.position)
 )
-LIMITS = (SPEED, ACCELERATION, POSITION)
+RANGE = np.array([-POSITION, POSITION])
+LIMITS = (SPEED, ACCELERATION, RANGE)
 TCP = np.array([0.01, -0.02, 0.15])
 
 
@@ -134,11 +135,11 @@ def test_a_stop_before_the_end_of_a_range_is_short_enough_to_end_within_it() -> 
     near = HOME.copy()
     near[0] = POSITION[0] - 0.01
     now = Reference(near, np.array([0.5, -0.1, 0.0, 0.0, 0.0, 0.0]), np.zeros(6))
-    room = stop_room(now, POSITION)
+    room = stop_room(now, RANGE)
     assert room == pytest.approx(2.0 * 0.01 / 0.5)
     rows = play(Stop(now.q, now.qd, 0.0, room))
     assert rows[-1].q[0] == pytest.approx(POSITION[0])
-    assert stop_room(Reference(near, np.zeros(6), np.zeros(6)), POSITION) == np.inf
+    assert stop_room(Reference(near, np.zeros(6), np.zeros(6)), RANGE) == np.inf
     assert len(play(Stop(now.q, now.qd, 0.2, room))) > 100, "no more torque than there is"
 
 
@@ -274,7 +275,7 @@ def test_a_line_to_where_the_tool_is_ends_at_once() -> None:
 
 
 def test_a_line_slows_down_when_a_joint_would_be_too_fast() -> None:
-    slow = (np.array([0.2, 9.0, 9.0, 9.0, 9.0, 9.0]), ACCELERATION, POSITION)
+    slow = (np.array([0.2, 9.0, 9.0, 9.0, 9.0, 9.0]), ACCELERATION, RANGE)
     way = [0.0, 0.3, 0.0]
     free, held = (play(line(way, limits=limits, speed=0.5, acceleration=2.0)) for limits in (LIMITS, slow))
     assert max(abs(row.qd[0]) for row in free) > 0.4, "without the limit the base turns faster"
@@ -365,7 +366,7 @@ def test_a_line_on_which_a_joint_turns_round_outside_its_range_is_refused() -> N
         position[joint] = angles[:, joint].max() + beyond
         if position[joint] < abs(angles[:, joint]).max() - 2e-5:
             continue
-        limits = (SPEED, ACCELERATION, position)
+        limits = (SPEED, ACCELERATION, np.array([-position, position]))
         if refused:
             with pytest.raises(MoveRefused, match=f"joint {joint + 1} would reach"):
                 line([0.0, 0.2, 0.0], limits=limits)

@@ -20,7 +20,7 @@ from tests.sim.laws import dynamics, meter
 HOME = np.array(UR5E.chain.home)
 MODEL = dynamics()
 TCP = np.array([0.0, 0.0, 0.1])
-LIMITS = (np.array(UR5E.limits.speed), np.array(UR5E.limits.acceleration), np.array(UR5E.limits.position))
+LIMITS = (np.array(UR5E.limits.speed), np.array(UR5E.limits.acceleration), np.array(UR5E.limits.ends).T.copy())
 REDUCED = SpeedLimits(0.25, 0.25, (1.0,) * 6)
 SLOW = apply(Settings(), {f"robot_limits.reduced.{part}_speed": 0.25 for part in ("tool", "elbow")})
 FAST = JointMove(id=1, q=tuple((np.add(HOME, [1.2, 0.2, -0.3, 0.3, 0.4, 1.5])).tolist()), speed=0.5, acceleration=0.5)
