@@ -96,4 +96,5 @@ def strips(joints: Array, level: float) -> Array:
     rim = SHADE_RADIUS * np.stack([np.cos(along), np.sin(along)], axis=-1)
     flat = np.concatenate([ends[:, None] + rim, begins[:, None] - rim], axis=1)
     heights = level + SHADE_LIFT - SHADE_STEP * np.arange(len(ends))
-    return np.concatenate([flat, np.broadcast_to(heights[:, None, None], (*flat.shape[:2], 1))], axis=2).reshape(-1, 3)
+    lifted = np.broadcast_to(heights[:, None, None], (*flat.shape[:2], 1))
+    return np.concatenate([flat, lifted], axis=2, dtype=np.float64).reshape(-1, 3)
