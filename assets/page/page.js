@@ -192,6 +192,15 @@
     const told = at(".pd-ghosts"), shown = box.firstChild, wanted = told ? told.innerHTML : "";
     if (shown.dataset.told !== wanted) { shown.dataset.told = wanted; shown.replaceChildren(...(told ? [...told.children].map((one) => one.cloneNode(true)) : [])); } };
 
+  // Where the stop is folded away, as on the small screen of a phone, another one is in sight, which presses it or its key.
+  const within = (node) => { const box = node && node.getBoundingClientRect(); return Boolean(box) && box.height > 1 && box.top >= 0 && box.bottom <= innerHeight + 1; };
+  const spare = () => { let button = at("#pd-stop"); const needed = Boolean(beat) && !within(stop());
+    if (needed && !button) { button = Object.assign(made("button", "pd-stop", ""), { type: "button", textContent: "EMERGENCY STOP" }); button.removeAttribute("role");
+      button.addEventListener("pointerdown", () => { const real = stop(); if (real) real.click();
+        else document.documentElement.dispatchEvent(new KeyboardEvent("keydown", { key: "x", code: "KeyX", bubbles: true })); });
+      document.body.append(button); }
+    if (button) button.hidden = !needed; };
+
   // A script has the numbers of its lines beside it.
   const number = (text) => { let side = text.previousElementSibling; if (!side || !side.classList.contains("pd-lines")) { side = made("div", "", "presentation"); side.className = "pd-lines";
       side.setAttribute("aria-hidden", "true"); side.append(document.createElement("pre")); text.before(side); text.setAttribute("spellcheck", "false"); text.setAttribute("wrap", "off"); }
@@ -308,5 +317,5 @@
     reload.addEventListener("click", () => location.reload());
     const lost = made("div", "pd-lost", "alert"); lost.append(document.createElement("span"), reload);
     document.body.prepend(skip, lost);
-    setInterval(() => { nameAll(); listen(); advance(); look(); view(); }, BEAT); });
+    setInterval(() => { nameAll(); listen(); advance(); look(); view(); spare(); }, BEAT); });
 })();
