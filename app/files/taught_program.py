@@ -210,7 +210,7 @@ class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
         return replace(self, steps=steps)
 
     def with_step_moved(self, at: int, by: int) -> "Lesson":
-        """With a step moved up (-1) or down (1) in the program."""
+        """With a step moved up (-1) or down (1) in the program, by one place or more."""
         return self.with_steps(_moved(self.plan, at, by))
 
 

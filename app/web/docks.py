@@ -17,6 +17,8 @@ from app.web.panel.main_bar import Taught
 from app.web.panel.mode_panel import Panel
 from app.web.recordings.recording import RecordingSwitch
 from app.web.running import Running
+from app.web.scene.ghost import Ghost
+from app.web.scene.moving_ghost import MovingGhost
 from app.web.scene.virtual_hand import VirtualHand
 from app.web.tabs.axes_tab import AxesTab
 from app.web.tabs.contact_log import Contacts
@@ -28,12 +30,17 @@ from app.web.tabs.settings_tab import SettingsTab
 from app.web.tabs.teach_tab import Teach
 from app.web.tabs.tools_tab import ToolsTab
 from app.web.walls.walls_tab import WallsTab
-from app.web.widgets import style
+from app.web.widgets import style, svg
 from app.web.widgets.drawn_parts import DrawnParts
+from app.web.widgets.html import Html
 from pendant.events.event import Event
 from pendant.program.jog_move import MoveThere
+from pendant.tick.modes import TICK_RATE
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
+
+MOMENT = (73, 80, 87)
+"""Colour of the arm as it was at a moment of the log."""
 
 LEFT = 348
 """Width of the left docks [pixels]."""
@@ -112,9 +119,10 @@ class Docks:
             self.contacts = Contacts(server, loop, arm)
         with self._lower.add_tab("Plots") as self.plots_dock:
             self.plots = Plots(gui, loop, arm)
-        self.journal.look_at = self.contacts.look_at = self.plots.look_at
+        self.moment = Ghost(server, arm, "/ghost/moment", MOMENT)
         with self._lower.add_tab("Record") as self._record_dock:
             self.recording = RecordingSwitch(server, recording, arm)
+        self.journal.look_at, self.contacts.look_at = self._look_back, self._look_at
         self.script: ScriptTab | None = None
         if scripts is not None:
             with self._lower.add_tab("Script") as self._script_dock:
@@ -123,6 +131,15 @@ class Docks:
         if interfaces is not None:
             with self._lower.add_tab("Network") as self._network_dock:
                 self.network = NetworkTab(gui, interfaces)
+        self.legend = Html(gui)
+        self._ghosts: tuple[tuple[Ghost | MovingGhost, str], ...] = (
+            (self.teach.ghost, "Waypoint"),
+            (self.jog.ghost, "Joint angles of the sliders"),
+            (self.panel.back.ghost, "Where free-drive began"),
+            (self.contacts.ghost, "At the contact"),
+            (self.moment, "At the chosen moment"),
+            (self.recording.replay.ghost, "Replay"),
+        )
         bar = self.panel.bar
         bar.taught, bar.ended, bar.scripts = self._taught, self.teach.ended, scripts
         self.jog.also(bar.start, self._start)
@@ -188,6 +205,10 @@ class Docks:
             large=(self.panel.leave._impl.uuid, self.panel.reset._impl.uuid),
         )
 
+    def _tell_ghosts(self) -> bool:
+        """Say over the picture what the ghosts in it mean."""
+        return self.legend.show(svg.ghosts((ghost.colour, text) for ghost, text in self._ghosts if ghost.posture is not None))
+
     def _taught(self) -> Taught:
         """What the main bar runs."""
         lesson = self.teach.lesson
@@ -197,6 +218,17 @@ class Docks:
         """The way to where the program begins, at manual speed."""
         start = self.teach.start
         return None if start is None else MoveThere(q=tuple(start.q), name=start.name)
+
+    def _look_at(self, tick: int | None) -> None:
+        """Show a moment in the plots, and in the replay if it is of that; None: follow the simulation."""
+        self.plots.look_at(tick)
+        self.recording.replay.look_at(tick)
+
+    def _look_back(self, tick: int | None) -> None:
+        """The same, and the arm as it was then, in the picture."""
+        self._look_at(tick)
+        posture = None if tick is None else self.plots.history.posture(tick)
+        self.moment.show(posture, self._loop.latest(), "" if tick is None else f"At {tick / TICK_RATE:.2f} s")
 
     def show(self, snapshot: Snapshot) -> bool:
         """Show a snapshot and the events since the last call, each part for itself; True if anything changed."""
@@ -222,7 +254,10 @@ class Docks:
             changed.append(draw("the tab Script", self.script.show, self._script_dock))
         if self.network is not None:
             changed.append(draw("the tab Network", self.network.show, self._network_dock))
+        changed.append(draw("the legend", self._tell_ghosts))
         changed.append(draw("the tab Cell", self.cell.show, self._cell_dock))
+        if self.plots.moment is None and self.moment.posture is not None:  # the simulation has begun again
+            self.moment.show(None, snapshot)
         draw("what is kept for the next start", self.keep, self._cell_dock)
         return any(changed)
 

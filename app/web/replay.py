@@ -13,6 +13,7 @@ from app.log_reading.playback import Player, snapshot_at
 from app.web.access.listening import Access
 from app.web.access.site import Site
 from app.web.panel.state_words import FIGURES, SAFETY_WORDS, SEVERITY_COLOURS, WORDS, pull_row, user_row
+from app.web.recordings.event_marks import EventMarks, moment
 from app.web.scene.arm_picture import Scene
 from app.web.widgets import style, svg
 from app.web.widgets.drawn_parts import DrawnParts
@@ -33,7 +34,6 @@ FRAMES_A_PLOT = 15
 
 SPEEDS = ("0.1 ×", "0.5 ×", "1 ×", "2 ×", "5 ×")
 SECONDS = {"x": uplot.Scale(time=False)}
-NOWHERE = "Jump to ..."
 
 
 class Replay(Site):
@@ -57,7 +57,7 @@ class Replay(Site):
         self.parts = DrawnParts(self.server.gui, self.troubles)
         self._controls()
         self._plots()
-        for control in (self.play, self.line, self.speed, self.goto):
+        for control in (self.play, self.line, self.speed, self.marks.choice):
             self.guard.for_anyone(control)
         self.guard.open(self.server, frozenset(), lambda client: None)
         self.start_drawing()
@@ -101,8 +101,8 @@ class Replay(Site):
         self.line = gui.add_slider("Time [s]", min=0.0, max=max(round(player.end, 2), 0.01), step=0.01, initial_value=0.0)
         self.speed = gui.add_button_group("Speed", SPEEDS)
         self.speed.value = "1 ×"
-        places = {f"{event.t:.2f} s {event.headline}": event.t for event in log.events[-MOST_EVENTS:]}
-        self.goto = gui.add_dropdown("Event", (NOWHERE, *places))
+        self.marks = EventMarks(gui, self.line, player.jump)
+        self.marks.show(log.events, player.end)
         self.facts = Html(gui)
         if log.missing:
             Html(gui, svg.note("Not whole", f"Of this recording {log.missing}.", Colour.AMBER))
@@ -126,11 +126,6 @@ class Replay(Site):
         async def _(_: viser.GuiEvent) -> None:
             player.speed = float(self.speed.value.split()[0])
 
-        @self.goto.on_update
-        async def _(_: viser.GuiEvent) -> None:
-            if self.goto.value in places:
-                player.jump(places[self.goto.value])
-
     def _plots(self) -> None:
         gui, log = self.server.gui, self.player.log
         panel = gui.add_panel()
@@ -139,7 +134,7 @@ class Replay(Site):
             with panel.add_tab(name):
                 if len(events) > MOST_EVENTS:
                     Html(gui, svg.fine_print(f"The last {MOST_EVENTS} of {len(events)}"))
-                Html(gui, svg.table(_line(event) for event in reversed(events[-MOST_EVENTS:])))
+                Html(gui, svg.event_log(_line(event) for event in reversed(events[-MOST_EVENTS:])))
         step = max(1, len(log) // POINTS)
         self._stretch = step
         state, truth, t = log.state.sampled(step), log.truth.sampled(step), log.t[::step]
@@ -191,5 +186,6 @@ def _numbers(player: Player, snapshot: Snapshot) -> list[tuple[str, str]]:
     ]
 
 
-def _line(event: EventLine) -> tuple[str, str, Colour]:
-    return f"{event.t:.2f} s", event.headline, SEVERITY_COLOURS[Severity[event.severity]]
+def _line(event: EventLine) -> svg.LogLine:
+    """A row, which leads to its moment."""
+    return svg.LogLine(f"{event.t:.2f} s", event.headline, SEVERITY_COLOURS[Severity[event.severity]], moment(event), 1)

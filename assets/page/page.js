@@ -9,6 +9,7 @@
   const keep = (name, value) => { kept[name] = value; try { localStorage.setItem(KEPT, JSON.stringify(kept)); } catch { /* not kept */ } };
   const made = (tag, id, role) => Object.assign(document.createElement(tag), { id, role });
   const began = performance.now();
+  if (kept.dark === undefined) kept.dark = matchMedia("(prefers-color-scheme: dark)").matches; // until somebody chooses
   if (kept.dark) document.documentElement.classList.add("pd-night");
 
   // The free-drive button and the stop: their ids stand on the style sheet that the server sends.
@@ -122,10 +123,15 @@
     tab.dispatchEvent(type.startsWith("pointer") ? pointer(type) : new MouseEvent(type, { bubbles: true, button: 0 })); };
   const edge = () => at('[data-dock-region-resize="left"]');
   const left = () => { const grip = edge(); return grip && grip.parentElement; };
+  // The pointer of the user moves nothing meanwhile, which is seconds where a page is drawn slowly.
+  let resizing = false;
+  addEventListener("pointermove", (event) => { if (resizing && event.isTrusted) event.stopImmediatePropagation(); }, true);
   const resize = (width) => { const grip = edge(); if (!grip) return; const strip = grip.firstElementChild || grip, x = left().getBoundingClientRect().width;
+    if (Math.abs(x - width) < 2) return;
+    resizing = true;
     const moved = (type, at_) => new PointerEvent(type, { bubbles: true, button: 0, buttons: 1, pointerId: 1, isPrimary: true, clientX: at_, clientY: 300 });
     strip.dispatchEvent(moved("pointerdown", x)); window.dispatchEvent(moved("pointermove", width));
-    requestAnimationFrame(() => requestAnimationFrame(() => window.dispatchEvent(moved("pointerup", width)))); };
+    requestAnimationFrame(() => requestAnimationFrame(() => { resizing = false; window.dispatchEvent(moved("pointerup", width)); })); };
   // The style sheet shares out the height of the left docks until somebody moves their border: viser begins from what is seen then.
   addEventListener("pointerdown", (event) => { const border = event.isTrusted && event.target.closest('[data-dock-region="left"] [data-dock-divider="column"]');
     const docks = border ? [border.previousElementSibling, border.nextElementSibling] : [];
@@ -141,6 +147,67 @@
   new MutationObserver(() => { if (isDark()) darkens = 0;
     if (restored && !darkens) { keep("dark", isDark()); document.documentElement.classList.toggle("pd-night", isDark()); } })
     .observe(document.documentElement, { attributes: true, attributeFilter: ["data-mantine-color-scheme"] });
+
+  // The camera: above the floor, and with the whole arm in the picture until somebody moves it. viser's client hands out its camera
+  // and nodes; its picture has y upwards.
+  const FLAT = Math.PI / 2 - 0.03, SEEN = 0.84, FRAMINGS = 6, POINTS = 250, BESIDE = 24, BESIDE_FINGER = 40;
+  const viewer = () => { const it = window.__viserMutable; return it && it.camera && it.cameraControl ? it : null; };
+  const inPicture = (target) => Boolean(target.closest && target.closest("canvas"));
+  // Calls `see` with points of the arm: 0 in the middle of the picture, 1 at its border; true of one of them ends it.
+  const overArm = (see) => { const { nodeRefFromName, camera } = viewer(), point = camera.position.clone();
+    return Object.entries(nodeRefFromName).some(([name, node]) => { let met = false;
+      if (node && /^\/arm\/[^/]+$/.test(name)) node.traverse((part) => { const shape = part.isMesh && part.geometry.attributes.position; if (met || !shape) return;
+        for (let i = 0, step = Math.max(1, Math.floor(shape.count / POINTS)); i < shape.count && !met; i += step)
+          met = see(point.fromBufferAttribute(shape, i).applyMatrix4(part.matrixWorld).project(camera)); });
+      return met; }); };
+  let above = null, framings = FRAMINGS, framed = "";
+  const look = () => { const it = viewer(); if (!it || !it.canvas) return;
+    const control = it.cameraControl, { width, height } = it.canvas.getBoundingClientRect(), size = `${width} ${height}`;
+    if (control !== above) { above = control; const target = it.camera.position.clone();
+      control.maxPolarAngle = FLAT;
+      control.addEventListener("update", () => { control.getTarget(target); if (target.y < 0) control.moveTo(target.x, 0, target.z, false); }); }
+    if (framed !== size && framings >= 0) { framed = size; framings = FRAMINGS; }
+    if (framings <= 0 || !width) return;
+    let widest = 0; overArm((point) => { widest = Math.max(widest, Math.abs(point.x), Math.abs(point.y)); return false; });
+    if (!widest) return;
+    framings -= 1; if (widest > SEEN) control.dollyTo(control.distance * Math.min(widest / SEEN, 1.6), false); };
+  const reframe = () => { const it = viewer(); if (!it) return; it.resetCameraPose(true); framings = FRAMINGS; };
+  for (const name of ["pointerdown", "wheel"]) addEventListener(name, ({ target }) => { if (inPicture(target)) framings = -1; }, { capture: true, passive: true });
+  // viser asks for the default of a press on the arm to be left out where that is not to be had, which the browser tells as an error.
+  addEventListener("pointerdown", (event) => { if (inPicture(event.target)) event.preventDefault = () => {}; }, true);
+  // A press that has only just missed the arm, which may move, is meant for it: the camera stays until it is lifted.
+  let pressing = 0;
+  addEventListener("pointerdown", ({ target, clientX, clientY, button, pointerType }) => { const it = viewer(); if (!it || button || !inPicture(target)) return;
+    const { left, top, width, height } = it.canvas.getBoundingClientRect(), room = pointerType === "touch" ? BESIDE_FINGER : BESIDE;
+    const x = clientX - left, y = clientY - top;
+    if (!overArm((point) => Math.hypot(width * (point.x + 1) / 2 - x, height * (1 - point.y) / 2 - y) < room)) return;
+    pressing += 1; it.cameraControl.enabled = false; }, true);
+  for (const name of ["pointerup", "pointercancel"]) addEventListener(name, () => { const it = pressing && viewer(); if (!it) return;
+    pressing = 0; setTimeout(() => { if (!pressing) it.cameraControl.enabled = true; }, 0); }, true);
+  // Over the picture: the way back to the first view, and what the ghosts in it mean.
+  const view = () => { const picture = at(".pd-picture"); if (!picture) return; let box = at("#pd-view");
+    if (!box || box.parentElement !== picture) { if (box) box.remove(); box = made("div", "pd-view", "group"); box.setAttribute("aria-label", "View");
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: "Reset view" }); button.addEventListener("click", reframe);
+      box.append(document.createElement("div"), button); picture.append(box); }
+    const told = at(".pd-ghosts"), shown = box.firstChild, wanted = told ? told.innerHTML : "";
+    if (shown.dataset.told !== wanted) { shown.dataset.told = wanted; shown.replaceChildren(...(told ? [...told.children].map((one) => one.cloneNode(true)) : [])); } };
+
+  // Where the stop is folded away, as on the small screen of a phone, another one is in sight, which presses it or its key.
+  const within = (node) => { const box = node && node.getBoundingClientRect(); return Boolean(box) && box.height > 1 && box.top >= 0 && box.bottom <= innerHeight + 1; };
+  const spare = () => { let button = at("#pd-stop"); const needed = Boolean(beat) && !within(stop());
+    if (needed && !button) { button = Object.assign(made("button", "pd-stop", ""), { type: "button", textContent: "EMERGENCY STOP" }); button.removeAttribute("role");
+      button.addEventListener("pointerdown", () => { const real = stop(); if (real) real.click();
+        else document.documentElement.dispatchEvent(new KeyboardEvent("keydown", { key: "x", code: "KeyX", bubbles: true })); });
+      document.body.append(button); }
+    if (button) button.hidden = !needed; };
+
+  // A script has the numbers of its lines beside it.
+  const number = (text) => { let side = text.previousElementSibling; if (!side || !side.classList.contains("pd-lines")) { side = made("div", "", "presentation"); side.className = "pd-lines";
+      side.setAttribute("aria-hidden", "true"); side.append(document.createElement("pre")); text.before(side); text.setAttribute("spellcheck", "false"); text.setAttribute("wrap", "off"); }
+    const count = text.value.split("\n").length, lines = side.firstChild;
+    if (lines.childElementCount !== count || side.dataset.count !== String(count)) { side.dataset.count = String(count); lines.textContent = Array.from({ length: count }, (_, i) => i + 1).join("\n"); }
+    lines.style.transform = `translateY(${-text.scrollTop}px)`; };
+  for (const name of ["input", "scroll"]) addEventListener(name, ({ target }) => { if (target.matches && target.matches("textarea.mantine-Textarea-input:not([aria-hidden])")) number(target); }, true);
 
   // Names for what viser leaves without one.
   const labelled = (control) => { for (let box = control.parentElement; box; box = box.parentElement) { const label = at("label", box); if (label) return label.textContent.trim(); if (box.childElementCount > 6) return ""; } return ""; };
@@ -166,6 +233,11 @@
     for (const head of all('[style*="cursor: pointer"]')) { const next = head.nextElementSibling; if (head.tagName !== "DIV" || !next || !at("svg", head) || head.querySelector("input,button") || !/^(button)?$/.test(head.getAttribute("role") || "") || head.closest("[role=tablist]")) continue;
       const hidden = next.getBoundingClientRect().height < 2; set(head, "role", "button"); set(head, "tabindex", "0"); set(head, "aria-expanded", String(!hidden)); }
     for (const list of all("label[for]")) { const target = document.getElementById(list.htmlFor); if (target && target.getAttribute("role") === "presentation") target.removeAttribute("role"); }
+    for (const text of all("textarea.mantine-Textarea-input:not([aria-hidden])")) number(text);
+    // Marks lie along the track of their time line.
+    for (const strip of all(".pd-marks")) { const line = document.getElementById(strip.dataset.pdLine), track = line && at(".mantine-Slider-trackContainer", line.parentElement); if (!track) continue;
+      const room = strip.parentElement.getBoundingClientRect(), box = track.getBoundingClientRect();
+      if (box.width) Object.assign(strip.style, { marginLeft: `${box.left - room.left}px`, width: `${box.width}px` }); }
     tell(); };
   addEventListener("keydown", (event) => { const head = event.target;
     if ((event.key === "Enter" || event.key === " ") && head.getAttribute && head.tagName === "DIV" && head.getAttribute("role") === "button") { event.preventDefault(); head.click(); } }, true);
@@ -180,6 +252,29 @@
     if (event.target.closest && event.target.closest(".pd-pace")) document.documentElement.classList.toggle("pd-explain"); });
   addEventListener("keydown", (event) => { if ((event.key === "Enter" || event.key === " ") && event.target.matches && event.target.matches("[data-pd-pick]")) {
     event.preventDefault(); picked(event.target); } });
+
+  // A step of the program is dragged to its place: by a mouse at once, by a finger that has rested on it; else it scrolls. The list
+  // chooses the step and then its place: of two messages of a dock within 50 ms viser sends the last.
+  const DRAGGED = 6, RESTED = 350, BETWEEN = 150;
+  let row = null;
+  const steps = () => all(".pd-steps [role=radio]");
+  const place = (y) => steps().filter((one) => { const { top, height } = one.getBoundingClientRect(); return one !== row.node && y > top + height / 2; }).length;
+  const drop = (done) => { if (!row) return; const { node, from, drags, to } = row; clearTimeout(row.rest); row = null;
+    for (const one of steps()) one.classList.remove("pd-dragged", "pd-before", "pd-after");
+    if (!done || !drags || to === from) return;
+    const chosen = option(node.getAttribute("data-pd-pick").trim()); if (chosen) chosen.click();
+    setTimeout(() => { const there = option(`to place ${to + 1}`); if (there) there.click(); }, BETWEEN); };
+  const drag = (y) => { row.drags = true; row.node.classList.add("pd-dragged"); row.to = place(y);
+    const others = steps().filter((one) => one !== row.node);
+    for (const one of others) one.classList.remove("pd-before", "pd-after");
+    if (row.to < others.length) others[row.to].classList.add("pd-before"); else if (others.length) others[others.length - 1].classList.add("pd-after"); };
+  addEventListener("pointerdown", (event) => { const node = event.target.closest && event.target.closest(".pd-steps [role=radio]"); if (!node || event.button || row) return;
+    row = { node, from: steps().indexOf(node), y: event.clientY, pointer: event.pointerId, finger: event.pointerType === "touch", drags: false, to: 0 };
+    if (row.finger) row.rest = setTimeout(() => { if (row) drag(row.y); }, RESTED); });
+  addEventListener("pointermove", (event) => { if (!row || event.pointerId !== row.pointer) return;
+    if (row.drags || (!row.finger && Math.abs(event.clientY - row.y) > DRAGGED)) drag(event.clientY); });
+  addEventListener("touchmove", (event) => { if (row && row.drags && event.cancelable) event.preventDefault(); }, { passive: false });
+  addEventListener("pointerup", () => drop(true)); addEventListener("pointercancel", () => drop(false));
 
   // One live region: what the panel says in words. The element stays when its content changes.
   const tell = () => { let box = at(".pd-light"); while (box && !at(".pd-note", box)) box = box.parentElement;
@@ -222,5 +317,5 @@
     reload.addEventListener("click", () => location.reload());
     const lost = made("div", "pd-lost", "alert"); lost.append(document.createElement("span"), reload);
     document.body.prepend(skip, lost);
-    setInterval(() => { nameAll(); listen(); advance(); }, BEAT); });
+    setInterval(() => { nameAll(); listen(); advance(); look(); view(); spare(); }, BEAT); });
 })();

@@ -1,11 +1,12 @@
 """A real loop, served to a real Chromium with a real pointer."""
 
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, ViewportSize, WebError, sync_playwright
 
 from app.files.library import load_arm
 from app.log.live import LiveRecording
@@ -28,6 +29,12 @@ FLAGS = (
 COARSE = "?fixedDpr=0.3"
 """Draws the scene with a tenth of the pixels, in software ten times as fast; controls stay sharp, the pointer where it is."""
 
+NOT_OURS = (
+    r"THREE\.Clock: This module has been deprecated",  # viser's client uses it
+    r"GL Driver Message .*GPU stall due to ReadPixels",  # of a browser that draws in software
+)
+"""What a console says of the program that drew the page, and not of the page."""
+
 
 def chromium_path() -> str | None:
     """Where Chromium is on this machine."""
@@ -36,6 +43,7 @@ def chromium_path() -> str | None:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "e2e: drives a real browser")
+    config.addinivalue_line("markers", "console(*patterns): what the browser says in its console of what the test does to it")
     config.addinivalue_line("markers", "every_size: a further size of the window, for `make test-full` and `make e2e-full` alone")
 
 
@@ -49,6 +57,31 @@ def browser() -> Iterator[Browser]:
         chromium = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
         yield chromium
         chromium.close()
+
+
+@pytest.fixture(autouse=True)
+def quiet_console(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, browser: Browser) -> Iterator[None]:
+    """Fails a test in which the console of any page has an error or a warning, but those of `NOT_OURS` and of its mark."""
+    known = re.compile("|".join((*NOT_OURS, *(one for mark in request.node.iter_markers("console") for one in mark.args))))
+    told: list[str] = []
+    new_context = browser.new_context
+
+    def heard(message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning") and not known.search(message.text):
+            told.append(f"{message.type}: {message.text[:300]}")
+
+    def raised(error: WebError) -> None:
+        told.append(f"uncaught: {error.error}")
+
+    def listened_to(**options: object) -> BrowserContext:
+        context = new_context(**options)  # type: ignore[arg-type]
+        context.on("console", heard)
+        context.on("weberror", raised)
+        return context
+
+    monkeypatch.setattr(browser, "new_context", listened_to)
+    yield
+    assert told == []
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ UPPER = ("Jog", "Axes", "Walls", "Tools", "Cell", "Lab", "Settings", "Teach")
 LOWER = ("Contacts", "Plots", "Record", "Events")
 """Tabs of the two docks, of which one each is seen at once."""
 
-FURTHER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1024, 768), (1440, 900), (1920, 1080))]
+FURTHER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1024, 768), (1280, 800), (1440, 900), (1920, 1080))]
 SIZES = [(820, 1180), *FURTHER]
 NARROW = [(1024, 768), pytest.param(820, 1180, marks=pytest.mark.every_size)]
 GRAVE = ("serious", "critical")
@@ -118,6 +118,15 @@ def test_what_stops_or_frees_the_arm_is_found_by_a_finger(visit: Visit, cell: Ce
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
 
 
+def test_a_phone_has_the_stop_in_sight_and_cuts_no_text(visit: Visit, cell: Cell) -> None:
+    page = ready(visit(390, 844))
+    stop = page.get_by_role("button", name="EMERGENCY STOP", exact=True)
+    expect(stop).to_be_in_viewport(ratio=0.99)
+    assert page.evaluate(CUT) == []
+    tap(stop)
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped")
+
+
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), pytest.param(1024, 768, marks=pytest.mark.every_size)])
 def test_what_is_always_needed_is_in_sight_without_scrolling(visit: Visit, cell: Cell, width: int, height: int) -> None:
     """Also with three steps in the program."""
@@ -202,10 +211,14 @@ def test_a_page_without_an_answer_says_so(visit: Visit, cell: Cell) -> None:
     expect(page.locator("html.pd-cut")).to_have_count(0)
 
 
+GONE = (r"WebSocket connection to .* failed", r"Failed to load resource: net::ERR_", r"WebSocket (closed|is closed)")
+"""What a browser says of a server that is not there."""
+
 AWAY = [pytest.param(2.0, 0.0, marks=pytest.mark.every_size), pytest.param(40.0, 0.0, marks=pytest.mark.every_size), (3.0, 600.0)]
 """How long there is no server [s], and what the page's clock is moved on by meanwhile."""
 
 
+@pytest.mark.console(*GONE)
 @pytest.mark.parametrize(("seconds", "skipped"), AWAY)
 def test_the_page_comes_back_by_itself_when_the_server_does(browser: Browser, loop: Loop, seconds: float, skipped: float) -> None:
     """With its tab, also after more refused connections than a browser lets a page try without a pause."""

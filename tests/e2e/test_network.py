@@ -24,6 +24,7 @@ def network(loop: Loop) -> Iterator[Served]:
     app.close()
 
 
+@pytest.mark.console("the server responded with a status of 401")
 def test_the_link_lets_in_and_a_text_stays_a_text(browser: Browser, network: Served) -> None:
     here = f"http://127.0.0.1:{network.server.get_port()}"
     page = browser.new_context().new_page()

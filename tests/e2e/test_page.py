@@ -14,6 +14,7 @@ from tests.e2e.cell import Cell
 pytestmark = pytest.mark.e2e
 
 
+@pytest.mark.console("Content Security Policy", "Failed to open WebSocket", "WebSocket connection to")
 def test_a_link_cannot_make_the_page_talk_to_another_server(browser: Browser, cell: Cell) -> None:
     called = threading.Event()
 

@@ -119,17 +119,17 @@ class Control:
         if holder == number:
             if self._asking is not None:
                 return f"Window {self._asking + 1} asks for control", "You have it. Give hands it over.", Colour.AMBER
-            lapsed = f"Free for others: nothing done for {SILENCE:.0f} s." if left == 0.0 else ""
+            lapsed = f"Idle for {SILENCE:.0f} s: others may take it." if left == 0.0 else ""
             return "You have control", lapsed, Colour.GREEN
         if holder is None:
             why = "The connection closed. " if self._closed else ""
             return "Nobody has control", f"{why}Any press takes it.", Colour.GREY
         name = f"Window {holder + 1}"
-        text = f"You lost control: {name} has control" if number in self._robbed else f"Watching: {name} has control"
+        text = f"{name} took control" if number in self._robbed else f"{name} has control"
         if self._asking == number and left != 0.0:
             return text, "Asked. Wait for an answer.", Colour.AMBER
         if left is None:
             return text, "It holds the arm.", Colour.AMBER
         if left > 0.0:
             return text, f"Free in {math.ceil(left)} s, or when released.", Colour.AMBER
-        return text, f"Idle for {SILENCE:.0f} s. Press anything to take over.", Colour.AMBER
+        return text, f"Idle for {SILENCE:.0f} s: any press takes over.", Colour.AMBER

@@ -1,4 +1,4 @@
-"""The event log, newest first: the same again is one row with a count, and a row leads to its moment in the plots."""
+"""The event log, newest first: the same again is one row with a count, and a row leads to its moment."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ CLOSE = 10 * TICK_RATE
 
 BETWEEN = 2
 NOW = "now"
-"""The choice of the moment that the plots follow by themselves."""
+"""The choice of the moment that goes on by itself."""
 
 FIRST: tuple[str, ...] = (NOW,)
 """What can be chosen before anything has happened."""
@@ -57,12 +57,14 @@ class Journal:
     """The tab with the event log."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        self.look_at: Callable[[int | None], None] = lambda tick: None  # told the tick that the plots are to show, None for now
+        self.look_at: Callable[[int | None], None] = lambda tick: None  # told the tick to show, None for now
         self._rows: list[LogRow] = []
         self._tick = 0
         self._moments: dict[str, int] = {}
         self.filter = gui.add_dropdown("Show", tuple(FILTERS))
-        self.moment: viser.GuiDropdownHandle[str] = gui.add_dropdown("Plots at", FIRST, hint="Or press a row")
+        self.moment: viser.GuiDropdownHandle[str] = gui.add_dropdown(
+            "Moment", FIRST, hint="Or press a row: plots, picture and an open replay show it"
+        )
         self.table = Html(gui, svg.event_log(()))
 
         @self.filter.on_update

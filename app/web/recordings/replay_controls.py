@@ -9,12 +9,13 @@ import viser
 from app.files.checked import BadInput
 from app.log.layout import WORDS as CODED
 from app.web.panel.state_words import WORDS
+from app.web.recordings.event_marks import EventMarks
 from app.web.recordings.shelf import Shelf
 from app.web.scene.moving_ghost import MovingGhost
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable, reveal
 from app.web.widgets.svg import Colour
-from pendant.tick.modes import Mode
+from pendant.tick.modes import TICK, Mode
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
@@ -56,6 +57,7 @@ class ReplayControls:
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Replay of", names)
         self.play = gui.add_button("Replay", icon=viser.Icon.PLAYER_PLAY, disabled=True)
         self.line = gui.add_slider("Time [s]", min=0.0, max=1.0, step=0.01, initial_value=0.0, visible=False)
+        self.marks = EventMarks(gui, self.line, self._jump)
         self.speed = gui.add_button_group("Speed", SPEEDS, visible=False)
         self.speed.value = "1 ×"
         self.said = Html(gui)
@@ -82,6 +84,7 @@ class ReplayControls:
             self._opened = player
             if player is not None:
                 self.line.max = max(round(player.end, 2), 0.01)
+            self.marks.show(() if player is None else player.log.events, 0.0 if player is None else player.end)
         label = "Replay"
         posture = None
         if player is not None:
@@ -97,12 +100,23 @@ class ReplayControls:
         changed += [self.ghost.show(posture, snapshot), self.said.show(self._words())]
         return any(changed)
 
+    def look_at(self, tick: int | None) -> None:
+        """Show the moment of an event there and pause, if the recording that is open has it; None: nothing to show."""
+        player = self._shelf.player
+        if tick is not None and player is not None and any(event.tick == tick for event in player.log.events):
+            player.playing = False
+            player.jump(tick * TICK)
+
     def look(self) -> None:
         """A recording has begun or ended: look into the folder at once, and offer the newest."""
         self._looked = self._now()
         self._look()
         if self._names and self._shelf.player is None and self.choice.value != self._names[0]:
             self.choice.value = self._names[0]
+
+    def _jump(self, time: float) -> None:
+        if self._shelf.player is not None:
+            self._shelf.player.jump(time)
 
     def _look(self) -> None:
         names = self._shelf.names()
@@ -145,8 +159,8 @@ class ReplayControls:
 
         @self.line.on_update
         async def _(_: viser.GuiEvent) -> None:
-            if shelf.player is not None and self.line.value != self._set:
-                shelf.player.jump(float(self.line.value))
+            if self.line.value != self._set:
+                self._jump(float(self.line.value))
 
         @self.speed.on_click
         async def _(_: viser.GuiEvent) -> None:

@@ -12,7 +12,7 @@ from trimesh.visual.material import PBRMaterial
 
 from app.web.scene.arm_marks import ball_radius
 from app.web.scene.force_ellipsoid import ForceEllipsoid
-from app.web.scene.stage import DARK, LIGHT, lay
+from app.web.scene.stage import DARK, LIGHT, Shadow, lay
 from app.web.scene.touch_arrow import TouchArrow
 from app.web.scene.wall_pictures import WallPictures
 from sim.arm.arm_file import Arm
@@ -82,6 +82,7 @@ class Scene:
         self.arrows = [TouchArrow(server.scene, i) for i in range(TOUCHES)]
         self.user = ForceEllipsoid(server.scene)
         self.walls = WallPictures(server)
+        self.shadow = Shadow(server.scene)
 
     def show(self, snapshot: Snapshot) -> bool:
         """Draw a snapshot, in one batch that clients apply together; True if anything changed."""
@@ -93,6 +94,7 @@ class Scene:
                 kind, row, _ = key.split(" ", 2)
                 poses = snapshot.truth_links if kind == "link" else snapshot.truth_objects
                 changed |= self._place(key, node, poses[int(row)])
+            changed |= self.shadow.show(snapshot.truth_links[:, :3], float(self._floor.position[2]))
             changed |= self._show_fingers(snapshot)
             changed |= self._show_payload(snapshot)
             changed |= self._show_believed(snapshot)

@@ -21,7 +21,7 @@ class Ghost:
 
     def __init__(self, server: viser.ViserServer, arm: Arm, name: str, colour: Colour) -> None:
         self._server, self._arm = server, arm
-        self._name, self._colour = name, colour
+        self._name, self.colour = name, colour
         self._q: tuple[float, ...] | None = None
         self._label = server.scene.add_label(f"{name} label", "", visible=False, anchor="top-center", font_screen_scale=0.9)
         self._node: viser.MeshHandle | None = None
@@ -61,7 +61,7 @@ class Ghost:
             self._label.position = matrix_from_quaternion(base[3:]) @ (flange[:3, :3] @ snapshot.p_FT + flange[:3, 3]) + base[:3]
             points, faces = vertices.astype(np.float32), shape.faces
             self._node = self._server.scene.add_mesh_simple(
-                self._name, points, faces, color=self._colour, opacity=0.3, cast_shadow=False, receive_shadow=False
+                self._name, points, faces, color=self.colour, opacity=0.3, cast_shadow=False, receive_shadow=False
             )
         return True
 

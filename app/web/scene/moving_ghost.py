@@ -20,7 +20,7 @@ class MovingGhost:
     """Limbs from joint to joint, half transparent. `name` is that of its node in the picture."""
 
     def __init__(self, server: viser.ViserServer, arm: Arm, name: str, colour: Colour) -> None:
-        self._arm = arm
+        self._arm, self.colour = arm, colour
         self._root = server.scene.add_frame(name, show_axes=False, visible=False)
         self._limbs: list[tuple[int, viser.MeshHandle]] = []  # the joint frame that each moves with
         frames = joint_frames(arm, np.zeros(arm.n))

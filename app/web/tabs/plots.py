@@ -47,6 +47,7 @@ class PlotHistory:
         self.friction = np.full((3, n, KEPT), np.nan)  # true, estimated, its deviation [N·m]
         self.torque = np.full((4, n, KEPT), np.nan)  # true, three ways [N·m]
         self.tracking = np.full((n, KEPT), np.nan)  # [mrad]
+        self.q = np.full((n, KEPT), np.nan)  # [rad]
         self.told, self._last = NOT_FREE, ""  # what pulls, and what pulled last, in words
         self.tick = 0
 
@@ -70,7 +71,15 @@ class PlotHistory:
         ways = seen.tau_ways if seen.tau_ways.shape == (3, n) else np.full((3, n), np.nan)
         _push(self.torque, np.vstack([_sized(snapshot.truth_tau_J, n), ways]))
         _push(self.tracking, np.full(n, np.nan) if snapshot.reference is None else 1000.0 * (seen.q - snapshot.reference))
+        _push(self.q, _sized(seen.q, n))
         self.tick = snapshot.tick
+
+    def posture(self, tick: int) -> list[float] | None:
+        """The measured joint angles nearest to a tick [rad]; None where they are not kept."""
+        ago = round((self.tick - tick) * RATE / TICK_RATE)
+        if not 0 <= ago < KEPT or not np.isfinite(held := self.q[:, KEPT - 1 - ago]).all():
+            return None
+        return held.tolist()
 
 
 class Plots:
@@ -93,6 +102,11 @@ class Plots:
     def note(self, fresh: list[Event]) -> None:
         """Mark the contacts among new events."""
         self._marks.extend(event.tick for event in fresh if event.kind.value.startswith(MARKED))
+
+    @property
+    def moment(self) -> int | None:
+        """The tick that is looked at; None: the simulation is followed."""
+        return self._moment
 
     def look_at(self, tick: int | None) -> None:
         """Show the time round a tick and stay there; None: follow the simulation."""

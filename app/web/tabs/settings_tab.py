@@ -23,7 +23,7 @@ from pendant.tick.modes import Mode, Phase
 from sim.exchange.snapshot import Snapshot
 
 SETTLED = 0.6
-"""A number counts once nobody has typed for this long: of "30" the "3" is not meant [s]."""
+"""A number or a search counts once nobody has typed for this long: of "30" the "3" is not meant [s]."""
 
 MOST = 24
 """Rows shown of a search."""
@@ -46,6 +46,7 @@ class SettingsTab:
         self._locked = False
         self._lock = threading.Lock()  # controls are made on viser's event loop and brought up to date by the painter
         self._typing: dict[str, asyncio.TimerHandle] = {}
+        self._searching: asyncio.TimerHandle | None = None
         self._before: list[dict[str, Value]] = []  # what each change replaced
         self.controls: dict[str, Any] = {}
         self._rows: list[SettingRow] = []
@@ -87,9 +88,10 @@ class SettingsTab:
                     self._fill()
 
         again(self.view, self._show_view)
-        for control in (self.section, self.search, self.preset, self.limit_preset):
+        for control in (self.section, self.preset, self.limit_preset):
             again(control, lambda: None)
         again(self.expert, self._offer)
+        self.search.on_update(self._typed_search)
 
         @self.defaults.on_click
         async def _(_: viser.GuiEvent) -> None:
@@ -172,12 +174,23 @@ class SettingsTab:
         settings = self._loop.settings
         self._rows = self._wanted(settings)
         for row in self._rows[:MOST] if self.search.value.strip() else self._rows:
-            controls[row.name] = self._control(row, value_of(settings, row.name))
-            self._texts[row.name] = Html(self._gui)
+            value = value_of(settings, row.name)
+            controls[row.name] = self._control(row, value)
+            self._texts[row.name] = Html(self._gui, svg.fine_print(about(row, value)))
         self._rows = [row for row in self._rows if row.name in controls]
         self.controls = controls
         self._let()
         self._refresh(settings)
+
+    async def _typed_search(self, _: viser.GuiEvent) -> None:
+        if self._searching is not None:
+            self._searching.cancel()
+        self._searching = asyncio.get_running_loop().call_later(SETTLED, self._find)
+
+    def _find(self) -> None:
+        """Show what the search finds: with each letter, rows would come and go that a page is still told of."""
+        with self._lock, self._tab:
+            self._fill()
 
     def _wanted(self, settings: Settings) -> list[SettingRow]:
         if self._chosen == VIEWS[0]:

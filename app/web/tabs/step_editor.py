@@ -11,7 +11,7 @@ from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from pendant.program.steps import LINES, MOST_RUNS, InputLevel
 
-NO_STEP, NO_WAYPOINT = "no step yet", "none"
+NO_STEP, NO_WAYPOINT, STAY = "no step yet", "none", "where it is"
 REMEMBERED = 100
 """Edits that can be undone."""
 
@@ -81,7 +81,9 @@ class StepEditor:
         self._edits, self._edited = edits, edited
         self.list = Html(gui)
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen step", names_of(edits.now))
-        Html(gui, style.unseen(self.choice._impl.uuid))  # the list chooses
+        self.place: viser.GuiDropdownHandle[str] = gui.add_dropdown("Move the chosen step", places_of(edits.now))
+        for unseen in (self.choice, self.place):
+            Html(gui, style.unseen(unseen._impl.uuid))  # the list chooses, and a row of it is dragged
         self.order = gui.add_button_group("Selected step", ("↑", "↓", "✕"))
         with gui.add_folder("Step to insert"):
             self.kind = gui.add_dropdown("Step", tuple(KINDS))
@@ -124,6 +126,9 @@ class StepEditor:
         place = self.chosen if chosen is None else chosen
         if self.choice.options != names:
             self.choice.options = names
+            self.place.options = places_of(lesson)
+        if self.place.value != STAY:
+            self.place.value = STAY
         wanted = names[min(max(place or 0, 0), len(names) - 1)]
         if self.choice.value != wanted:
             self.choice.value = wanted
@@ -218,6 +223,14 @@ class StepEditor:
             by = -1 if self.order.value == "↑" else 1
             self._to(lesson.with_step_moved(at, by), at + by)
 
+    def _put(self) -> None:
+        """Move the chosen step to the place that was asked for."""
+        at, lesson, wanted = self.chosen, self._edits.now, self.place.value
+        if at is None or wanted == STAY:
+            return
+        to = self.place.options.index(wanted) - 1
+        self._to(lesson.with_step_moved(at, to - at), to)
+
     def _go_back(self) -> None:
         if self.history.value == "Clear":
             self._edits.to(self._edits.now.with_steps([]))
@@ -240,7 +253,12 @@ class StepEditor:
             async def _(_: viser.GuiEvent, act: Callable[[], None] = act) -> None:
                 act()
 
-        for control, act in ((self.choice, self._fill), (self.kind, self._see_fields), (self.fields["then"], self._see_fields)):
+        for control, act in (
+            (self.choice, self._fill),
+            (self.place, self._put),
+            (self.kind, self._see_fields),
+            (self.fields["then"], self._see_fields),
+        ):
 
             @control.on_update
             async def _(event: viser.GuiEvent, act: Callable[[], None] = act) -> None:
@@ -259,6 +277,11 @@ class StepEditor:
 def names_of(lesson: Lesson) -> tuple[str, ...]:
     """The steps as they are listed, numbered from 1; or that there is none."""
     return tuple(f"{number}. {step.text}" for number, step in enumerate(lesson.plan, 1)) or (NO_STEP,)
+
+
+def places_of(lesson: Lesson) -> tuple[str, ...]:
+    """Where the chosen step can be moved to: nowhere, or the place that it then has."""
+    return (STAY, *(f"to place {number}" for number in range(1, len(lesson.plan) + 1)))
 
 
 def waypoints_of(lesson: Lesson) -> tuple[str, ...]:

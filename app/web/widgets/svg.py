@@ -199,6 +199,30 @@ class LogLine(NamedTuple):
     often: int
 
 
+def ghosts(rows: Iterable[tuple[tuple[int, int, int], str]]) -> str:
+    """The legend of the picture: colour of each ghost, and what it means. The page shows it over the picture."""
+    lines = "".join(f'<p><i style="--c:rgb{colour}"></i>{escape(text)}</p>' for colour, text in rows)
+    return f'<div class="pd-ghosts">{lines}</div>' if lines else ""
+
+
+class TimeMark(NamedTuple):
+    """An event on a time line: its place as a share of the line, the name of its moment, its colour."""
+
+    share: float
+    moment: str
+    colour: Colour
+
+
+def time_marks(line: str, marks: Iterable[TimeMark]) -> str:
+    """Marks along the track of the slider whose id is `line`; a press on one chooses its moment."""
+    ticks = "".join(
+        f'<i style="left:{100.0 * mark.share:.2f}%;--c:{mark.colour.value}" title="{escape(mark.moment)}" '
+        f'data-pd-pick="{escape(mark.moment)}"></i>'
+        for mark in marks
+    )
+    return f'<div class="pd-marks" data-pd-line="{line}" aria-hidden="true">{ticks}</div>' if ticks else ""
+
+
 def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
     """A list of messages: time, text, colour of its mark."""
     return event_log(LogLine(time, text, colour, "", 1) for time, text, colour in rows)

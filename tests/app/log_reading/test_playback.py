@@ -1,4 +1,5 @@
 from collections.abc import Iterator
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from app.session.prepare import prepare
 from app.session.session_file import Session
 from app.session.timeline import Timeline
 from app.web.access.listening import HERE
+from app.web.recordings.event_marks import moment
 from app.web.replay import Replay
 from pendant.tick.modes import Mode
 from sim.exchange.snapshot import Snapshot
@@ -157,6 +159,15 @@ def test_the_page_follows_the_player(replay: Replay) -> None:
     player.playing = True
     until(lambda: not player.playing, "it plays to its end")
     assert player.time == player.end
+
+
+def test_events_are_marks_on_the_time_line_and_rows_that_lead_there(replay: Replay) -> None:
+    player, (first, *_, last) = replay.player, replay.player.log.events
+    for event in (first, last):
+        assert f'data-pd-pick="{escape(moment(event))}"' in replay.marks.shown
+        replay.marks.choice.value = moment(event)
+        until(lambda event=event: player.time == pytest.approx(event.t), "it is gone to")
+    assert f"left:{100.0 * last.t / player.end:.2f}%" in replay.marks.shown
 
 
 def test_a_plot_marks_the_time(replay: Replay) -> None:

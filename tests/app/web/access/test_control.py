@@ -81,7 +81,7 @@ def test_control_is_taken_shown_and_given_back(served: Served, two: Two, loop: F
     assert loop.desk.take().touches == ()
     until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
-    until(lambda: shown(strips, "Window 2 has control", "You have control"), "client 2 has it")
+    until(lambda: shown(strips, "Window 2 took control", "You have control"), "client 2 has it")
 
 
 def test_after_ten_silent_seconds_and_not_before_somebody_else_takes_over(
@@ -96,7 +96,7 @@ def test_after_ten_silent_seconds_and_not_before_somebody_else_takes_over(
     clock.now += 0.02
     until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
-    until(lambda: shown(strips, "Window 2 has control", "You have control"), "client 2 has it")
+    until(lambda: shown(strips, "Window 2 took control", "You have control"), "client 2 has it")
     first.drag("start")
     first.hold(served.panel.free_drive._impl.uuid)
     until(lambda: served.guard.refused["not the operator"] >= 2, "the former operator is refused")
@@ -110,9 +110,9 @@ def test_a_watcher_is_told_when_it_may_act_and_who_lost_control_that_it_has(serv
     assert "data-pd-watching" in strips[1].text.shown
     assert "data-pd-watching" not in strips[0].text.shown
     clock.now += SILENCE
-    until(lambda: shown(strips, "Free for others: nothing done for 10 s.", "Press anything to take over"), "the warning")
+    until(lambda: shown(strips, "Idle for 10 s: others may take it.", "Idle for 10 s: any press takes over."), "the warning")
     press(second, strips[1].take)
-    until(lambda: shown(strips, "You lost control: Window 2 has control", "You have control"), "the former operator is told")
+    until(lambda: shown(strips, "Window 2 took control", "You have control"), "the former operator is told")
 
 
 def test_who_is_left_is_told_that_the_connection_of_who_had_control_closed(served: Served, two: Two) -> None:
@@ -202,7 +202,7 @@ def test_who_watches_asks_for_control_and_the_holder_gives_it(served: Served, tw
     second.set(served.lab.force._impl.uuid, value=90.0)
     until(lambda: served.guard.refused["not the operator"] == 1, "to ask is not to have")
     press(first, strips[0].release)
-    until(lambda: shown(strips, "Watching: Window 2 has control", "You have control"), "given")
+    until(lambda: shown(strips, "Window 2 has control", "You have control"), "given")
     assert strips[1].release.label == "Release"
     second.set(served.lab.force._impl.uuid, value=90.0)
     until(lambda: served.hand.cap == 90.0, "client 2 may act")
@@ -220,7 +220,7 @@ def test_a_request_ends_with_who_asked_and_with_who_was_asked(served: Served, tw
     clock.now += SILENCE
     until(lambda: strips[2].take.visible, "it is free")
     press(third, strips[2].take)
-    until(lambda: "You lost control" in strips[0].text.shown and "You have control" in strips[2].text.shown, "taken")
+    until(lambda: "took control" in strips[0].text.shown and "You have control" in strips[2].text.shown, "taken")
     third.close()
 
 

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from app.log.events_file import line_of
 from app.log_reading.reader import read
 from app.web.server import Served
+from pendant.events.event import Event, Kind
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
@@ -129,6 +131,14 @@ def test_a_recording_is_replayed_beside_the_running_arm(served: Served, join: Jo
     client.set(replay.speed._impl.uuid, value="0.1 ×")
     client.set(replay.play._impl.uuid, value=True)
     until(lambda: replay.play.label == "Pause" and 0.2 < replay.line.value < 0.6, "slowly on")
+    player = replay._shelf.player
+    assert player is not None
+    assert not replay.marks.choice.visible  # nothing has happened
+    player.log.events.append(line_of(Event(Kind.RESET, 200, {})))
+    for tick, time in ((200, 0.4), (100, 0.4), (None, 0.4)):  # of the others it has no event
+        replay.look_at(tick)
+        assert not player.playing or tick != 200
+        assert player.time == pytest.approx(time, abs=0.01)
     client.set(replay.leave._impl.uuid, value=True)
     until(lambda: replay.ghost.posture is None and not replay.line.visible, "over")
 

@@ -87,6 +87,29 @@ def test_a_moment_that_is_looked_at_stays_in_the_picture(loop: FakeLoop, still: 
     assert "stroke-dasharray" not in plots.upper.shown
 
 
+def test_a_row_of_the_log_shows_the_arm_as_it_was_then(loop: FakeLoop, still: Served) -> None:
+    """As long as the plots keep it; a new start has no moments."""
+    docks, q = still.docks, loop.latest().estimate.q.tolist()
+    for _ in range(20):
+        loop.advance(0.05)
+        docks.plots.show(loop.latest())
+    for tick, posture in (
+        (loop.tick - 250, q),
+        (loop.tick + 50, None),
+        (loop.tick - 60 * 500, None),
+        (loop.tick, q),
+        (None, None),
+    ):
+        docks.journal.look_at(tick)
+        assert docks.moment.posture == (None if posture is None else pytest.approx(tuple(posture)))
+        assert docks.moment.text == ("" if posture is None or tick is None else f"At {tick / 500:.2f} s")
+    docks.journal.look_at(loop.tick)
+    loop.tick = 8
+    docks.plots.show(loop.latest())
+    docks.show(loop.latest())
+    assert docks.moment.posture is None
+
+
 @pytest.mark.parametrize("view", list(View))
 def test_every_view_is_drawn(served: Served, join: Join, loop: FakeLoop, view: View) -> None:
     client = join()

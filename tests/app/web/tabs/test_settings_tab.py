@@ -14,6 +14,7 @@ from pendant.limits.axis_locks import JOINTS
 from pendant.tick.modes import Mode
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
+from tests.pendant.test_all_settings import other
 
 Join = Callable[[], RawClient]
 
@@ -238,3 +239,20 @@ def test_a_file_is_not_read_while_the_controls_are_made(still: Served) -> None:
         assert tab.preset.options == before
     reader.join()
     assert tab.preset.options[-1] == "Mine"
+
+
+def test_whatever_the_safety_page_shows_changes_its_checksum(loop: FakeLoop, still: Served) -> None:
+    tab = still.docks.settings
+
+    def page() -> tuple[str, tuple[object, ...]]:
+        tab.show(loop.latest(), [])
+        checksum = tab._line.shown.split("Safety checksum</dt><dd>")[1][:8]
+        return checksum, (tab.limits.shown, *(control.value for control in tab.controls.values()))
+
+    shipped, shown = page()
+    seen = {shipped: shown}
+    for row in describe():
+        loop.settings = apply(Settings(), {row.name: other(row)})
+        checksum, now = page()
+        assert seen.setdefault(checksum, now) == now, f"{row.name} is shown, and the checksum stays"
+    assert len({values for values in seen.values() if values != shown}) > len(SAFETY)

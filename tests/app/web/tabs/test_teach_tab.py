@@ -11,7 +11,7 @@ from app.files.taught_program import Do, Lesson, TaughtStep
 from app.web.access.takes import MAX_FILE
 from app.web.scene.ghost import limbs
 from app.web.server import Served
-from app.web.tabs.step_editor import KINDS
+from app.web.tabs.step_editor import KINDS, STAY
 from pendant.inputs import Command
 from pendant.program.steps import JointMove, ProgramState
 from pendant.tick.modes import Mode
@@ -252,3 +252,15 @@ def test_a_waypoint_is_taught_again_where_the_arm_is(loop: FakeLoop, still: Serv
 
 def test_every_kind_of_step_can_be_chosen() -> None:
     assert set(KINDS.values()) | {"touch"} == set(get_args(Do))
+
+
+def test_the_chosen_step_is_moved_to_the_place_that_a_drag_asks_for(served: Served, join: Join) -> None:
+    client, teach = join(), served.docks.teach
+    register(served, client, 4)
+    for chosen, place, order in ((0, 3, "P2 P3 P1 P4"), (3, 1, "P4 P2 P3 P1"), (1, 2, "P4 P2 P3 P1")):
+        client.set(teach.steps.choice._impl.uuid, value=teach.steps.choice.options[chosen])
+        until(lambda chosen=chosen: teach.steps.chosen == chosen, "chosen")
+        client.set(teach.steps.place._impl.uuid, value=f"to place {place}")
+        until(lambda order=order: " ".join(str(step.to) for step in teach.lesson.plan) == order, order)
+        until(lambda place=place: teach.steps.choice.value.startswith(f"{place}. "), "still chosen")
+        assert teach.steps.place.value == STAY
