@@ -153,7 +153,7 @@ def robot_(
 
     plan = recording_plan(record_rates, record_split)
     prepared = set_up(robot, config, any_file, "robot", shipped=Setup())
-    get_ready()
+    get_ready(prepared.arm)
     network = Network(host, port_offset, programs, allowed_files(config, any_file))
     with robot_until_interrupted(prepared, network, record, plan) as interfaces:
         announce_robot(prepared.arm, interfaces)

@@ -18,6 +18,7 @@ from app.runs.warm_up import warm_up
 from app.session.session_file import SHIPPED_ALONE, AllowedFiles
 from app.session.timeline_checks import Prepared
 from app.web.access.listening import access_through
+from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
 
 PATIENCE = 4.0
@@ -38,12 +39,12 @@ class Network(NamedTuple):
     files: AllowedFiles = SHIPPED_ALONE  # that a set-up of the control channel may name
 
 
-def get_ready() -> None:
-    """Make ready what is compiled, and say so where that takes a while."""
+def get_ready(arm: Arm) -> None:
+    """Make ready what is compiled for an arm, and say so where that takes a while."""
     notice = threading.Timer(PATIENCE, lambda: sys.stdout.write(f"{COMPILING}\n"))
     notice.start()
     try:
-        warm_up()
+        warm_up(arm)
     finally:
         notice.cancel()
 

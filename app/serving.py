@@ -24,6 +24,7 @@ from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.interfaces import JOINTS, RobotInterfaces
 from app.robot_serving import FINISHED, STOOD, Network, end_in_turn, get_ready, open_interfaces
 from app.runs.runner import simulate
+from app.runs.warm_up import warm_up
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import FIRST_START
 from app.urscript.running.script_runner import ScriptRunner
@@ -76,7 +77,7 @@ def serve_until_interrupted(
     Raises:
         BadInput: an address cannot be used.
     """
-    get_ready()
+    get_ready(prepared.arm)
     loop = Loop(lambda: simulate(prepared))
     with ending() as end:
         recording = LiveRecording(loop, record or Path(), plan)
@@ -185,6 +186,8 @@ class ServedArms:
                 prepared = check_cell(cell, "kept")
         except BadInput:  # a file that cannot be used stays as it is, and nothing is kept
             keeper = cell = None
+        if prepared.arm.n != self._loop.simulation.arm.n:  # else all is compiled
+            warm_up(prepared.arm)
         simulate(prepared)
         return ReadyArm(prepared, keeper, cell, meshes_of(prepared.arm))
 

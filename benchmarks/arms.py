@@ -12,6 +12,7 @@ from msgspec.structs import replace
 
 from app.files.library import load_arm, robots
 from sim.arm.arm_file import Arm, Channels, SensorNumbers
+from sim.arm.frames import joint_frames, placements
 from sim.arm.joint_constants import ripple_torque
 
 USUAL = "ur5e"
@@ -95,13 +96,20 @@ def rubs(name: str, part: Part, speed: float) -> float:
 
 def _friction(arm: Arm, part: Part, speed: float) -> float:
     """Mean over the joints that move a part: their friction over its furthest lever [N]; of the wrist their friction [N·m]."""
+    elbow = arm.chain.elbow
+    upper_arm = float(np.linalg.norm(placements(arm)[2 : elbow + 1, :3, 3], axis=1).sum())
     joints, lever = {
-        "elbow": (slice(0, 2), abs(arm.chain.a[1])),
-        "flange": (slice(0, 3), arm.reach),
-        "wrist": (slice(3, None), 1.0),
+        "elbow": (slice(0, elbow), upper_arm),
+        "flange": (slice(0, elbow + 1), arm.reach),
+        "wrist": (slice(elbow + 1, None), 1.0),
     }[part]
     friction = arm.frictions
     return float(np.mean([np.interp(speed / lever, friction.speed, torque) for torque in friction.torque[joints]])) / lever
+
+
+def shoulder_height(arm: Arm) -> float:
+    """Height of the second joint's origin above the base's [m]."""
+    return float(joint_frames(arm, np.zeros(arm.n))[1][2, 3])
 
 
 def missed(name: str) -> float:

@@ -16,6 +16,7 @@ from app.files.library import load_arm
 from app.runs.network_run import NetworkRun
 from app.session.actions import DashboardLine, SendScript
 from app.session.session_file import Session
+from benchmarks.arms import shoulder_height
 from benchmarks.blocking.motions import Case, Moves, Obstacle, Stop, Wanted, stops
 from benchmarks.blocking.places import box_across, tip
 from benchmarks.common import Report, main, spread
@@ -114,7 +115,7 @@ class Trial:
         at_tcp = jacobian[:3] + np.cross(jacobian[3:].T, lever).T
         n = self.q.size
         if case.obstacle == "own link":
-            upper_arm = 0.3 * self.probe.dynamics.places(self.q)[2] + [0.0, 0.0, 0.7 * self.probe.arm.chain.d[0]]
+            upper_arm = 0.3 * self.probe.dynamics.places(self.q)[2] + [0.0, 0.0, 0.7 * shoulder_height(self.probe.arm)]
             towards = upper_arm - (p + lever)
         elif case.obstacle == "table":
             towards = np.array([0.0, 0.0, -1.0])

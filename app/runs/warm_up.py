@@ -3,6 +3,7 @@
 import os
 from pathlib import Path
 
+import msgspec
 import numpy as np
 
 from app.files.checked import load
@@ -11,8 +12,12 @@ from app.log.recorder import Recorder
 from app.runs.runner import run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session
+from app.session.timeline_checks import Prepared
 from app.urscript.language.reading import read_script
 from pendant.motion.script_requests import DirectTorque, SpeedTool
+from pendant.program.steps import JointMove, LinearMove, Program
+from sim.arm.arm_file import Arm
+from sim.arm.frames import joint_frames, quaternion_from_matrix
 from sim.motion.moves import Reference
 from sim.motion.pace import Pace
 from sim.motion.streams import ToolStream
@@ -20,13 +25,16 @@ from sim.paths.tool_point import ToolPoint
 from sim.simulation import Simulation
 
 
-def warm_up() -> None:
+def warm_up(arm: Arm | None = None) -> None:
     """Go through all that a tick may do, without a page: half a minute in a fresh installation, a second later on.
 
-    A kernel that is compiled at its first use would stop the arm for seconds, in the middle of a user's first free-drive.
+    A kernel that is compiled at its first use would stop the arm for seconds, in the middle of a user's first free-drive. Kernels
+    are compiled for a number of joints: an `arm` that has others than the session's goes through it itself.
     """
     session = load(ASSETS / "warm-up.yaml", Session)
     prepared = prepare(session, "warm-up")
+    if arm is not None and arm.n != prepared.arm.n:
+        prepared = _on(arm, prepared)
     simulation = simulate(prepared)
     with Recorder(Path(os.devnull), simulation, session.title) as recorder:
         run(session, prepared, simulation, None, see=lambda decision: recorder.see(simulation, decision))
@@ -37,6 +45,18 @@ def warm_up() -> None:
     torque = DirectTorque(id=0, torque=none, viscous=none, coulomb=none)
     simulation.controller.feed_forward.commanded(torque, simulation.estimate, simulation.estimator.friction)
     read_script("")
+
+
+def _on(arm: Arm, prepared: Prepared) -> Prepared:
+    """The same with another arm: from its home, a hundredth of a radian and a centimetre."""
+    home = arm.chain.home
+    place = joint_frames(arm, home)[-1]
+    x, y, z = place[:3, 3].tolist()
+    w, i, j, k = quaternion_from_matrix(place[:3, :3]).tolist()
+    joints = JointMove(q=(home[0] + 0.01, *home[1:]), speed=0.2, acceleration=0.5)
+    line = LinearMove(position=(x, y, z - 0.01), quaternion=(w, i, j, k), speed=0.1, acceleration=0.5)
+    scenario = msgspec.structs.replace(prepared.scenario, posture=home)
+    return prepared._replace(arm=arm, scenario=scenario, program=Program(name="a centimetre", steps=(joints, line)))
 
 
 def _stream(simulation: Simulation) -> None:

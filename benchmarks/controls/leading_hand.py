@@ -4,7 +4,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from benchmarks.arms import LEVER, USUAL, load
+from benchmarks.arms import LEVER, USUAL, load, shoulder_height
 from benchmarks.hold import HOLD, IDLE, RELEASE
 from benchmarks.postures import REACH, posture
 from pendant.all_settings import Settings, apply
@@ -163,7 +163,7 @@ def elbow_directions(hand: Hand) -> Array:
 
     That is within `LEVER`, which goes with the arm's reach as postures do.
     """
-    elbow = hand.place("elbow") - np.array([0.0, 0.0, hand.simulation.arm.chain.d[0]])
+    elbow = hand.place("elbow") - np.array([0.0, 0.0, shoulder_height(hand.simulation.arm)])
     round_base = np.cross([0.0, 0.0, 1.0], elbow)
     up = np.cross(round_base, elbow)
     axes = [up / np.linalg.norm(up)]

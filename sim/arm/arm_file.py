@@ -49,7 +49,7 @@ class Sourced(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     assumed: list[str] = []
 
 
-class Origin(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, omit_defaults=True):
+class LinkOrigin(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, omit_defaults=True):
     """A frame in the frame of the link before it, at q = 0; of a joint's link also the axis that it turns about, in its own."""
 
     xyz: Triple  # [m]
@@ -71,8 +71,8 @@ class ChainParameters(Sourced, frozen=True, omit_defaults=True):
     a: list[Offset] = []  # [m]
     d: list[Offset] = []  # [m]
     alpha: list[Angle] = []  # [rad]
-    origins: list[Origin] = []  # of each link in the one before, of the first in the base
-    flange: Origin | None = None  # in the last link
+    origins: list[LinkOrigin] = []  # of each link in the one before, of the first in the base
+    flange: LinkOrigin | None = None  # in the last link
 
 
 class Masses(Sourced, frozen=True):

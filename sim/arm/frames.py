@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.arm.arm_file import Arm, Capsule, Origin
+from sim.arm.arm_file import Arm, Capsule, LinkOrigin
 
 Array = NDArray[np.float64]
 
@@ -104,7 +104,7 @@ def placements(arm: Arm) -> Array:
     return np.array(found)
 
 
-def _turn(origin: Origin) -> Array:
+def _turn(origin: LinkOrigin) -> Array:
     """Orientation of a frame in the one before it (3, 3)."""
     return rotation_from_rpy(origin.rpy or [0.0] * 3) if origin.quaternion is None else matrix_from_quaternion(origin.quaternion)
 

@@ -2,6 +2,17 @@
 
 import subprocess
 import sys
+from typing import Any
+
+import msgspec
+import pytest
+
+from app.files.library import load_arm
+from app.runs import runner, warm_up
+from app.runs.runner import RunOutcome
+from app.session.session_file import Session
+from app.session.timeline_checks import Prepared
+from pendant.program.steps import JointMove, Program
 
 PROBE = """
 import importlib, pkgutil
@@ -44,3 +55,21 @@ print(sorted(name for name, count in compiled().items() if count != before[name]
 def test_sessions_of_every_kind_compile_nothing_more() -> None:
     found = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
+
+
+def test_an_arm_with_other_joints_goes_through_it_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    gone: list[Prepared] = []
+
+    def run(session: Session, prepared: Prepared, *others: Any, **named: Any) -> RunOutcome:
+        gone.append(prepared)
+        return runner.run(msgspec.structs.replace(session, duration=0.01), prepared, *others, **named)
+
+    monkeypatch.setattr(warm_up, "run", run)
+    for name in ("iiwa7", "ur10e"):
+        warm_up.warm_up(load_arm(name))
+    assert [prepared.arm.name for prepared in gone] == ["iiwa7", "ur5e"], "kernels go by the number of joints alone"
+    program = gone[0].program
+    assert isinstance(program, Program)
+    assert isinstance(program.steps[0], JointMove)
+    assert len(program.steps[0].q) == 7
+    assert gone[0].scenario.posture == gone[0].arm.chain.home

@@ -10,7 +10,7 @@ import pinocchio as pin
 import pytest
 
 from app.files.library import load_arm
-from sim.arm.arm_file import Arm, Origin
+from sim.arm.arm_file import Arm, LinkOrigin
 from sim.arm.chain import chain, plate_body
 from sim.arm.frames import joint_frames, rpy_from_matrix
 from sim.arm.scenario import Load, Scenario
@@ -43,7 +43,7 @@ def urdf(arm: Arm) -> str:
     def text(values: Any) -> str:
         return " ".join(f"{value:.17g}" for value in values)
 
-    def joint(name: str, kind: str, links: tuple[str, str], origin: Origin) -> str:
+    def joint(name: str, kind: str, links: tuple[str, str], origin: LinkOrigin) -> str:
         R = np.eye(3)
         if origin.quaternion is not None:
             w, x, y, z = np.array(origin.quaternion) / math.hypot(*origin.quaternion)
