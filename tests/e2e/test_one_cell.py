@@ -53,6 +53,7 @@ def test_two_windows_edit_one_cell(visit: Visit, cell: Cell) -> None:
         tap(page.get_by_role("button", name="Register waypoint"))
         for each in (page, other):
             each.get_by_role("radio", name=f"{number}. Move to P{number}").wait_for()
+        tap(page.get_by_role("button", name="Release"))
     for page in (first, second):
         open_tab(page, "Cell")
     undo = second.get_by_role("button", name="Undo", exact=True).locator("visible=true").first
