@@ -55,7 +55,7 @@ def led_back(page: Page, cell: Cell) -> None:
     cell.served.lab.scenarios.choice.value = "The way back is told"
     page.get_by_role("button", name="Play").click()
     cell.wait(lambda: cell.happened(Kind.LEFT_WALL), "the fence", 60.0)
-    page.get_by_text("Way back to the ghost").wait_for()
+    page.get_by_text("To return to where free-drive began").first.wait_for()
     cell.pass_time(COOL_DOWN)
 
 

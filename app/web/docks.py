@@ -33,6 +33,7 @@ from app.web.walls.walls_tab import WallsTab
 from app.web.widgets import style, svg
 from app.web.widgets.drawn_parts import DrawnParts
 from app.web.widgets.html import Html
+from app.web.widgets.labels import Labels
 from pendant.events.event import Event
 from pendant.program.jog_move import MoveThere
 from pendant.tick.modes import TICK_RATE
@@ -140,6 +141,9 @@ class Docks:
             (self.moment, "At the chosen moment"),
             (self.recording.replay.ghost, "Replay"),
         )
+        stood = (self.panel.back.ghost, self.teach.ghost, self.jog.ghost, self.contacts.ghost, self.moment)
+        own = (self.panel.hit.label, self.contacts.label, self.panel.back.label, self.panel.marks.label)
+        self.labels = Labels([*own, *(ghost.label for ghost in stood)])
         bar = self.panel.bar
         bar.taught, bar.ended, bar.scripts = self._taught, self.teach.ended, scripts
         self.jog.also(bar.start, self._start)
@@ -255,6 +259,7 @@ class Docks:
         if self.network is not None:
             changed.append(draw("the tab Network", self.network.show, self._network_dock))
         changed.append(draw("the legend", self._tell_ghosts))
+        changed.append(draw("texts in the picture", self.labels.show))
         changed.append(draw("the tab Cell", self.cell.show, self._cell_dock))
         if self.plots.moment is None and self.moment.posture is not None:  # the simulation has begun again
             self.moment.show(None, snapshot)

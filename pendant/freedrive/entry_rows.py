@@ -151,7 +151,7 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.RESIDUAL_STAYED: EventRow(
         Effect.INFO,
         Severity.WARNING,
-        "Free-drive refused: the force stays",
+        "Free-drive refused: payload looks wrong ({mass:+.1f} kg)",
         "Still {force:.0f} N: the payload seems to differ by {mass:+.1f} kg from the configured one. Correct or measure it.",
         ("force", "mass", "zero"),
         variant=(

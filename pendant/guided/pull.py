@@ -77,7 +77,7 @@ class PullCauses(NamedTuple):
         return f"{what}: over {100.0 * CERTAIN:.1f} %" if likely > CERTAIN else f"{what}: {100.0 * likely:.0f} %"
 
 
-SHARE_WORDS = ("Nobody", "A hand", "A hand on a link", "Payload changed", "Sensor stepped")
+SHARE_WORDS = ("No hand", "A hand", "A hand on a link", "Payload changed", "Sensor stepped")
 """Of the fields of `CauseShares`; the first ones are those of `HandFelt`."""
 
 

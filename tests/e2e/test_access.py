@@ -233,7 +233,7 @@ def test_the_page_comes_back_by_itself_when_the_server_does(browser: Browser, lo
     page.wait_for_timeout(500)
     first.close()
     expect(page.locator("#pd-lost")).to_contain_text("Trying again", timeout=30_000)
-    expect(page.get_by_role("button", name="Reload")).to_be_visible()
+    expect(page.get_by_role("button", name="Reload")).to_be_visible(timeout=30_000)
     page.clock.fast_forward(round(1000 * skipped))
     page.wait_for_timeout(1000 * seconds)
     if skipped:

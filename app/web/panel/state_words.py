@@ -80,7 +80,7 @@ LEAVING_PERIODS = ("free-drive", "restart")
 
 def pull_row(pull: PullCauses | None) -> list[tuple[str, str]]:
     """What pulls at the free arm, as a row of figures; none while it is not free."""
-    return [] if pull is None else [("Pulls at the arm", pull.words)]
+    return [] if pull is None else [("Detected at the arm", pull.words)]
 
 
 YOURS = "Estimated hand force"

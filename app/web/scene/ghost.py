@@ -23,7 +23,7 @@ class Ghost:
         self._server, self._arm = server, arm
         self._name, self.colour = name, colour
         self._q: tuple[float, ...] | None = None
-        self._label = server.scene.add_label(f"{name} label", "", visible=False, anchor="top-center", font_screen_scale=0.9)
+        self.label = server.scene.add_label(f"{name} label", "", visible=False, anchor="top-center", font_screen_scale=0.9)
         self._node: viser.MeshHandle | None = None
 
     @property
@@ -34,22 +34,22 @@ class Ghost:
     @property
     def text(self) -> str:
         """What is written at its tool centre point."""
-        return self._label.text if self._label.visible else ""
+        return self.label.text if self.label.visible else ""
 
     @property
     def place(self) -> NDArray[np.float64]:
         """Where that is written, (3,) in W [m]."""
-        return self._label.position
+        return self.label.position
 
     def show(self, q: Sequence[float] | None, snapshot: Snapshot, text: str = "") -> bool:
         """Show the arm in posture `q` [rad] with a text at its tool centre point, or nothing; True if anything changed."""
         wanted = None if q is None else tuple(q)
-        if wanted is not None and text != self._label.text:
-            self._label.text = text
+        if wanted is not None and text != self.label.text:
+            self.label.text = text
         if wanted == self._q:
             return False
         self._q = wanted
-        self._label.visible = wanted is not None and bool(text)
+        self.label.visible = wanted is not None and bool(text)
         if self._node is not None:
             self._node.remove()
             self._node = None
@@ -58,7 +58,7 @@ class Ghost:
             base = snapshot.truth_links[0]
             vertices = shape.vertices @ matrix_from_quaternion(base[3:]).T + base[:3]
             flange = joint_frames(self._arm, np.array(wanted))[-1]
-            self._label.position = matrix_from_quaternion(base[3:]) @ (flange[:3, :3] @ snapshot.p_FT + flange[:3, 3]) + base[:3]
+            self.label.position = matrix_from_quaternion(base[3:]) @ (flange[:3, :3] @ snapshot.p_FT + flange[:3, 3]) + base[:3]
             points, faces = vertices.astype(np.float32), shape.faces
             self._node = self._server.scene.add_mesh_simple(
                 self._name, points, faces, color=self.colour, opacity=0.3, cast_shadow=False, receive_shadow=False

@@ -71,7 +71,7 @@ def test_the_likeliest_is_told_in_words(share: float, lost: bool, gone: float, t
 
 
 def test_who_is_felt_is_told_without_a_figure() -> None:
-    assert [PullCauses(who).words for who in HandFelt] == ["Nobody", "A hand", "A hand on a link"] == list(SHARE_WORDS[:3])
+    assert [PullCauses(who).words for who in HandFelt] == ["No hand", "A hand", "A hand on a link"] == list(SHARE_WORDS[:3])
 
 
 @pytest.mark.parametrize(

@@ -32,8 +32,9 @@ def test_the_operator_switches_it_and_sees_what_is_written(served: Served, join:
     client.set(switch.switch._impl.uuid, value=False)
     until(lambda: not served.recording.on and loop.watch is None, "it is off")
     until(lambda: "saved" in switch.status.shown, "the file is saved")
-    assert served.recording.path is not None
-    until(lambda: read(tmp_path / served.recording.path).whole, "it is whole")
+    path = served.recording.path
+    assert path is not None
+    until(lambda: read(tmp_path / path).whole, "it is whole")
 
 
 def test_who_only_watches_cannot(served: Served, join: Join, loop: FakeLoop) -> None:

@@ -171,7 +171,7 @@ def test_what_pulls_is_drawn_as_shares_and_told_in_words(loop: FakeLoop, still: 
     plots.view.value = View.PULL.value
     for pull, told in (
         (None, "not in free-drive"),
-        (PullCauses(HandFelt.NOBODY), "Nobody"),
+        (PullCauses(HandFelt.NOBODY), "No hand"),
         (PullCauses(HandFelt.FLANGE, -1.0, 1.0, -9.0), "A hand"),
         (PullCauses(HandFelt.FLANGE, 3.5, 1.0, -9.0), "The payload fell: 97 %"),
         (None, "last: The payload fell: 97 %"),
@@ -181,7 +181,7 @@ def test_what_pulls_is_drawn_as_shares_and_told_in_words(loop: FakeLoop, still: 
         docks.show(loop.latest())
         plots.show(loop.latest())
         assert f"<em>{told}</em>" in plots.upper.shown
-        assert ("Pulls at the arm" in docks.panel.numbers.shown) is (pull is not None)
+        assert ("Detected at the arm" in docks.panel.numbers.shown) is (pull is not None)
         assert pull is None or told in docks.panel.numbers.shown
     assert [colour in plots.upper.shown.split("<div>")[0] for colour in PULL_COLOURS] == [True, True, False, True, True]
     shares = plots.history.pull[:, -4:-1]
