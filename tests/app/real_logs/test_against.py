@@ -136,7 +136,7 @@ class TestPushed:
         found = hold_against(log_of(values), prepared(), quiet)
         first = {each.what: each.t for each in reversed(found.told)}
         assert 4.0 < first["contact gained"] < 4.2
-        assert 4.0 < found.told[0].t  # 100 N are a collision, too, and nothing is told before
+        assert found.told[0].t > 4.0  # 100 N are a collision, too, and nothing is told before
 
 
 class TestSaid:
