@@ -173,14 +173,16 @@ def _match_speeds(name: str, columns: dict[str, Array], told: list[str], given: 
 def _slope(columns: dict[str, Array]) -> float | None:
     """Change of the angles over that of the speeds' sum; None: nothing moves."""
     t, q, qd = columns["t"], columns["q"], columns["qd"]
-    step = np.diff(t)
-    usual = step < GAP * np.median(step)
-    said = (0.5 * (qd[1:] + qd[:-1]) * step[:, None])[usual]
-    gone = np.diff(q, axis=0)[usual]
     if not np.ptp(q, axis=0).max() > MOVES:
         return None
-    power = float((said**2).sum())
-    return float((said * gone).sum()) / power if power > 0.0 else np.inf
+    step = np.diff(t)
+    usual = step < GAP * np.median(step)
+    product = power = 0.0
+    for i in range(q.shape[1]):  # joint by joint: an hour is not to be there five times
+        said = (0.5 * (qd[1:, i] + qd[:-1, i]) * step)[usual]
+        product += float(said @ np.diff(q[:, i])[usual])
+        power += float(said @ said)
+    return product / power if power > 0.0 else np.inf
 
 
 def _gaps(t: Array, rate: float, told: list[str]) -> tuple[int, ...]:
@@ -206,7 +208,7 @@ def _refuse_impossible(log: JointLog, arm: Arm) -> None:
     """Numbers that no such arm can have."""
     farthest = [max(-low, high) for low, high in arm.limits.ends]
     for what, values, limits in (("q", log.q, farthest), ("qd", log.qd, arm.limits.speed)):
-        most, allowed = np.quantile(np.abs(values), 0.999, axis=0), 1.5 * np.array(limits)
+        most, allowed = _most(values), 1.5 * np.array(limits)
         wrong = int((most / allowed).argmax())
         if most[wrong] > allowed[wrong]:
             unit = "rad" if what == "q" else "rad/s"
@@ -216,7 +218,7 @@ def _refuse_impossible(log: JointLog, arm: Arm) -> None:
                 f"{most[wrong]:.4g} {unit}",
                 f"the {arm.name} has {limits[wrong]:.4g}: another arm, or another unit",
             )
-    torque = np.quantile(np.abs(log.motor_torque(arm)), 0.999, axis=0) / np.array(arm.limits.torque)
+    torque = _most(log.motor_torque(arm)) / np.array(arm.limits.torque)
     wrong = int(torque.argmax())
     if torque[wrong] > MOST_TORQUE:
         what = "current" if log.torque is None else "torque"
@@ -226,3 +228,8 @@ def _refuse_impossible(log: JointLog, arm: Arm) -> None:
             f"{torque[wrong]:.3g} times the rated torque",
             f"the {arm.name} cannot: another arm, another unit, or another order of columns",
         )
+
+
+def _most(values: Array) -> Array:
+    """Largest size of each column (n,), but for a thousandth that may be glitches."""
+    return np.array([np.quantile(np.abs(values[:, i]), 0.999) for i in range(values.shape[1])])

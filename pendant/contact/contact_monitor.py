@@ -84,7 +84,7 @@ class ContactMonitor:
             self._catch_up()
         contacts: tuple[Contact, ...] = ()
         used = (use.tool, use.flange)
-        for index, (detector, signal) in enumerate(zip(self.detectors, estimate.signals.each(), strict=False)):
+        for index, (detector, signal) in enumerate(zip(self.detectors, estimate.signals.each(0, len(AT_TOOL)), strict=False)):
             if signal is None and detector.history.count == 0:
                 continue
             detector.sense(signal)
@@ -115,7 +115,7 @@ class ContactMonitor:
         if len(self._kept) == SUMMED:
             self.links.gap()
         for signals in self._kept:
-            for detector, signal in zip(self.detectors, signals.each(), strict=False):
+            for detector, signal in zip(self.detectors, signals.each(0, len(AT_TOOL)), strict=False):
                 detector.sense(signal)
             self.links.sense(signals)
         self._kept.clear()

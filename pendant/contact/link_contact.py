@@ -83,17 +83,21 @@ class LinkChange(NamedTuple):
     steps: int  # ticks back to its beginning
 
 
-def _felt(change: Array, signals: ContactSignals) -> tuple[Array, Array]:
-    """What each joint feels of a contact in a change of torques and causes, and how wrong that may be, each (n,) [N·m]."""
+def _felt(new: Array, old: Array, signals: ContactSignals) -> tuple[Array, Array]:
+    """What each joint feels of a contact in the change of torques and causes, and how wrong that may be, each (n,) [N·m].
+
+    Friction at rest may hold as much as it can one way before, and the other way now.
+    """
     n, (shares, misfit) = signals.joints, signals.known
-    causes = change[n:].reshape(misfit.shape)
+    change, held = new - old, new[-n:] + old[-n:]
+    causes = change[n:-n].reshape(misfit.shape)
     wrong = misfit * causes
-    return change[:n] - np.vecdot(shares, causes), np.sqrt(np.vecdot(wrong, wrong))
+    return change[:n] - np.vecdot(shares, causes), np.sqrt(np.vecdot(wrong, wrong)) + held
 
 
-def _sizes(change: Array, limit: Array, signals: ContactSignals) -> tuple[float, float]:
+def _sizes(new: Array, old: Array, limit: Array, signals: ContactSignals) -> tuple[float, float]:
     """What a joint up to the elbow feels in a change, and what of it its errors cannot make; the largest of each, in bounds."""
-    felt, wrong = _felt(change, signals)
+    felt, wrong = _felt(new, old, signals)
     size = np.abs(felt)
     return float((size / limit)[: signals.elbow + 1].max()), max(float(((size - wrong) / limit)[: signals.elbow + 1].max()), 0.0)
 
@@ -118,7 +122,7 @@ class LinkWatch:
 
     def __init__(self) -> None:
         self.points = (History(), History())  # force and acceleration at the elbow, and at the forearm's end
-        self.torques = Torques()  # that the joints feel, then the causes of their errors
+        self.torques = Torques()  # that the joints feel, the causes of their errors, and what friction may hold of them
         self.touched: int | None = None  # which of `LINKS`
         self.silent = False  # after a release, until the torques have settled
         self._begun = False  # there is something to forget
@@ -136,7 +140,7 @@ class LinkWatch:
             if self.torques.count:
                 self.gap()
             return
-        elbow, forearm = signals.each()[2:4]
+        elbow, forearm = signals.each(2, 4)
         assert elbow is not None
         assert forearm is not None
         self._left_out = bool(elbow.saturated)
@@ -185,19 +189,19 @@ class LinkWatch:
         Or it is one that ends, where less is felt than before: it began too gently to be seen.
         """
         elbow, n = signals.elbow, limit.size
-        felt, wrong = _felt(new - self._rest, signals)
+        felt, wrong = _felt(new, self._rest, signals)
         bound = limit + wrong
         largest = float((np.abs(felt) / bound)[: elbow + 1].max())
         if not self._count.step(min(int(largest), HEAVIEST), use.slow_count, use.misses):
             if largest < 1.0:
-                self._rest += FOLLOW * (new - self._rest)
+                self._follow(new, signals)
             return None
         change = np.abs(felt)
         told = np.flatnonzero((change >= SURE * bound) & (change >= SHARE * change.max()))
         last = int(told[-1]) if told.size else elbow - 1
         link = min(max(last - elbow + 1, 0), len(LINKS) - 1)
-        old = self._rest
-        before, now = (np.abs(_felt(each, signals)[0]) / bound for each in (old, new))
+        old, nothing = self._rest, np.zeros_like(new)
+        before, now = (np.abs(_felt(each, nothing, signals)[0]) / bound for each in (old, new))
         if now.max() < ENDED * before.max() and before.max() > 2.0:
             self._over()
             return self._reported(Change.LOST, link, new[:n], old[:n])
@@ -205,13 +209,21 @@ class LinkWatch:
         self._faded = 0
         return self._reported(Change.GAINED, link, new[:n], old[:n])
 
+    def _follow(self, new: Array, signals: ContactSignals) -> None:
+        """What counts as no contact follows; not where the arm stands and friction may hide a hand that comes slowly."""
+        now = FOLLOW * (new - self._rest)
+        if signals.stands:
+            hides = new[-signals.joints :] > 0.0
+            each = now[signals.joints : -signals.joints].reshape((signals.joints, -1))
+            now[: signals.joints][hides], now[-signals.joints :][hides], each[hides] = 0.0, 0.0, 0.0
+        self._rest += now
+
     def _held(self, new: Array, limit: Array, signals: ContactSignals) -> LinkChange | None:
         """In contact: it has gone where little is left of its torques, at once if they went as fast as a hand lets go."""
         self._age += 1
         if self._age < HELD:  # that mean still holds ticks from before the contact
             return None
-        change = self.torques.mean(0, HELD) - self._rest
-        size, left = _sizes(change, limit, signals)
+        size, left = _sizes(self.torques.mean(0, HELD), self._rest, limit, signals)
         self._largest = max(left, LATELY * self._largest)
         gone = max(1.0, LEFT * self._largest, min(STRAYED, HALF * self._largest))
         if self._calm > GONE:  # it has faded: what strays meanwhile is no hand that is felt again
@@ -231,10 +243,10 @@ class LinkWatch:
         ages = range(0, min(BEFOREHAND + LETTING_GO, self._age, self.torques.count - NEWEST), NEWEST)
         means, n, last = [self.torques.mean(age, NEWEST) for age in ages], LETTING_GO // NEWEST, signals.elbow + 1
         for new, old, older in zip(means, means[n : BEFOREHAND // NEWEST], means[2 * n :] + means[-1:] * n, strict=False):
-            felt, wrong = (each[:last] for each in _felt(old - self._rest, signals))
-            left, _ = _felt(new - self._rest, signals)
-            went, doubt = _felt(old - new, signals)
-            before, _ = _felt(older - old, signals)
+            felt, wrong = (each[:last] for each in _felt(old, self._rest, signals))
+            left, _ = _felt(new, self._rest, signals)
+            went, doubt = _felt(old, new, signals)
+            before, _ = _felt(older, old, signals)
             sudden = np.maximum(DROP * (np.abs(felt) - wrong), SUDDEN * np.abs(before[:last]))
             sudden = np.maximum(sudden, CLEARLY * limit[:last])
             if ((np.abs(left[:last]) < np.abs(felt)) & (np.abs(went[:last]) - doubt[:last] >= sudden)).any():
@@ -249,7 +261,7 @@ class LinkWatch:
         """After a release: silent until the torques are calm; then statistics start again (CD-9a)."""
         self._age += 1
         self._rest = self.torques.mean(SETTLED, NEWEST)
-        calm = _sizes(new - self._rest, limit, signals)[1] < 1.0
+        calm = _sizes(new, self._rest, limit, signals)[1] < 1.0
         self._calm = self._calm + 1 if calm else 0
         if self._calm >= CALM or self._age >= SILENCE:
             self.silent = False

@@ -42,18 +42,19 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
     every tick takes as long as to make them.
 
     Of n joints, m causes of each: a row of `Signal` of each source; torques (n,) of contacts behind the sensor [N·m]; the causes
-    (n, m) of what these are wrong by; the deviation (n,) of their changes for other reasons [N·m]; shares (n, m) of the causes
-    that they hold; misfit (n, m), how wrong these shares may be.
+    (n, m) of what these are wrong by; what friction at rest may hold of them (n,) [N·m]; the deviation (n,) of their changes for
+    other reasons [N·m]; shares (n, m) of the causes that they hold; misfit (n, m), how wrong these shares may be.
     """
 
     numbers: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))
     valid: tuple[bool, ...] = ()  # of each source
     joints: int = 0  # n; 0: the links are not watched
     elbow: int = 2  # which joint the elbow is
+    stands: bool = False  # no joint moves
 
     @property
     def felt(self) -> NDArray[np.float64]:
-        """Torques of contacts behind the sensor, then the causes of their errors (n + n m,)."""
+        """Torques of contacts behind the sensor, the causes of their errors, and what friction may hold (n + n m + n,)."""
         begin = self._begin
         return self.numbers[begin : begin + self._felt]
 
@@ -74,11 +75,15 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def _felt(self) -> int:
-        """Torques and causes are a third of what is left without the deviations, but for the torques."""
+        """The causes are a third of what is left without torques, friction and deviations."""
         n = self.joints
-        return n + (self.numbers.size - self._begin - 2 * n) // 3
+        return 2 * n + (self.numbers.size - self._begin - 3 * n) // 3
 
-    def each(self) -> tuple[Signal | None, ...]:
-        """The signal of each source, None where it is not valid."""
-        rows = self.numbers[: self._begin].reshape((len(self.valid), WIDTH)).tolist()
-        return tuple(Signal._make(row) if valid else None for row, valid in zip(rows, self.valid, strict=True))
+    def each(self, first: int = 0, last: int | None = None) -> tuple[Signal | None, ...]:
+        """The signal of each source from `first` to before `last`, None where it is not valid."""
+        part = slice(first, last)
+        valid = self.valid[part]
+        if not any(valid):
+            return (None,) * len(valid)
+        rows = self.numbers[: self._begin].reshape((len(self.valid), WIDTH))[part].tolist()
+        return tuple(Signal._make(row) if ok else None for row, ok in zip(rows, valid, strict=True))

@@ -76,7 +76,8 @@ def hit_parts(models, shapes, force):
         residual, causes = momentum.residual[i], errors.causes[i]
         unexplained = noise(errors, momentum.doubt[i], causes[0])
         felt[i] = since_rest(errors, i, residual, change)
-        whole, error = variance(errors, i, causes), variance(errors, i, change)
+        unsure = momentum.held[i] ** 2 / 3.0  # of a uniform error; a change has two of them
+        whole, error = variance(errors, i, causes) + unsure, variance(errors, i, change) + 2.0 * unsure
         if whole < error:
             felt[i], error = left_over(errors.shares[i], residual, causes), whole
         certainty[i] = 1.0 / (error + unexplained + (SHARE * felt[i]) ** 2)

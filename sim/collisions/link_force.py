@@ -4,6 +4,9 @@ A force f at a point that is |l_i| away from joint i's axis makes the torque tau
 beyond the link that it meets. So the last joint that feels a torque moves that link; and whatever the direction, the force is at
 least max_i |tau_i| / |l_i|, over the joints up to that one and the lever of the link's far end.
 
+Friction of a joint that stands may hold a part of a torque that the motor's current tells, up to its breakaway torque, and twice
+that of a change: what is more than this is compared with the noise.
+
 Before an arm has moved, its gears and encoders may make larger torques than a contact. They change little, so the change since
 nothing was touched is looked at as well, and the larger of the two counts.
 
@@ -14,6 +17,7 @@ Transactions on Robotics 33(6), 2017, sections IV and V.
 import numpy as np
 
 from sim.compiled.kernel import kernel
+from sim.estimation.joint_tracking import unheld
 from sim.estimation.torque_errors import CAUSES, beyond, left_over, noise
 
 SURE = 5.0
@@ -34,9 +38,10 @@ def link_force(models, elbow):
     for i in range(n):
         residual, causes = momentum.residual[i], errors.causes[i]
         unexplained = noise(errors, momentum.doubt[i], causes[0])
-        left = left_over(errors.shares[i], residual, causes)
+        held = momentum.held[i]
+        left = unheld(left_over(errors.shares[i], residual, causes), held)
         size = beyond(errors, i, (left, causes), (unexplained, SURE))
-        left = since_rest(errors, i, residual, change)
+        left = unheld(since_rest(errors, i, residual, change), 2.0 * held)
         changed = beyond(errors, i, (left, change), (unexplained, SURE))
         if abs(changed) > abs(size):
             size = changed

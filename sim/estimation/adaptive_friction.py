@@ -54,8 +54,8 @@ class AdaptiveFriction:
         tau_m - J theta_dd - tau_dyn = f_in + f_out - tau_ext + (gain error) tau_dyn + bias,
     with the model f = (c0 + c1 |v|/(|v| + knee) + c2 |v| + c3 |tau_J|) sign(v), all times the known fall with temperature.
     Friction changes its sign with the speed, the model's errors do not: both directions tell them apart. Learning needs the
-    motor torque, a speed above the gate and no contact; without them the estimate stands and its uncertainty grows.
-    From one side alone output friction cannot be told from an external torque: its share of the whole is assumed as filed.
+    motor torque, a speed above the gate and no contact beyond what friction may be; without them the estimate stands and its
+    uncertainty grows. From one side alone output friction cannot be told from an external torque: its share is assumed as filed.
     With `joint_control.friction_from` the deflection stands for the rigid model. It bears what touches the arm, too, so friction
     is learned in contact; what is left is the input side's, and the whole is that over its share:
         (tau_m - J theta_dd - tau_deflection) / (1 - output share) = f_in + f_out + (gain error) tau_deflection + bias.

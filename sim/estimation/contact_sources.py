@@ -15,6 +15,7 @@ from sim.arm.chain import Body
 from sim.arm.frames import skew
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
+from sim.estimation.adaptive_friction import GATE
 from sim.estimation.flange_drive import driven, flange_drive
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.torque_errors import CAUSES, left_over
@@ -81,7 +82,7 @@ class ContactSources:
             before=(2, 3, n),  # Jacobians of the two points on links, a tick ago
             felt=(n,),  # what the joints feel and the flange sensor does not
             joints="2i8",  # whose origins are elbow and end of the forearm
-            numbers=(len(LISTED) * WIDTH + n * (2 + 3 * CAUSES),),  # all that `ContactSignals` holds
+            numbers=(len(LISTED) * WIDTH + n * (3 + 3 * CAUSES),),  # all that `ContactSignals` holds
         )
         own = self._own = self._record[0]
         own["smoothing"] = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
@@ -129,11 +130,11 @@ class ContactSources:
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
         models = (self._dynamics.recursion.record, self._momentum.record, self._momentum.errors.record, self._drive)
-        _read(self._record, models, (sample.values, estimate.qd, estimate.qdd), watched)
+        stands = _read(self._record, models, (sample.values, estimate.qd, estimate.qdd), watched)
         self._started = links
         valid = (pair, flange, links, links)
         if links:
-            estimate.signals = ContactSignals(self._numbers.copy(), valid, self._joints, self._elbow)
+            estimate.signals = ContactSignals(self._numbers.copy(), valid, self._joints, self._elbow, stands)
         else:
             estimate.signals = ContactSignals(self._signals.copy(), valid)
 
@@ -151,8 +152,12 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
 
 
 @kernel
-def _read(sources, models, felt, watched) -> None:
-    """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work."""
+def _read(sources, models, felt, watched) -> bool:
+    """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work.
+
+    Returns:
+        Whether no joint moves.
+    """
     felt = Feeling(*felt)
     watched = WatchedSources(*watched)
     own, rigid, momentum, errors, drive = sources[0], models[0][0], models[1][0], models[2][0], models[3][0]
@@ -176,6 +181,10 @@ def _read(sources, models, felt, watched) -> None:
         for which in range(2):
             rows[2 + which, 11] = 1.0 if beyond else 0.0
             _derive(own, rigid, (felt, rows[2 + which]), (which, watched.went_on))
+    fastest = 0.0
+    for speed in felt.qd:
+        fastest = max(fastest, abs(speed))
+    return fastest < GATE
 
 
 @kernel
@@ -229,11 +238,11 @@ def _keep(out, momentum, errors) -> None:
     """What is known of the torques of contacts behind the sensor, in the order of `ContactSignals`."""
     n, m = errors.causes.shape
     for i in range(n):
-        out[i], out[n + n * m + i] = momentum.residual[i], momentum.doubt[i]
+        out[i], out[n + n * m + i], out[2 * n + n * m + i] = momentum.residual[i], momentum.held[i], momentum.doubt[i]
         for k in range(m):
             at = n + m * i + k
-            out[at], out[at + n + n * m] = errors.causes[i, k], errors.shares[i, k]
-            out[at + n + 2 * n * m] = errors.misfit[i, k]
+            out[at], out[at + 2 * n + n * m] = errors.causes[i, k], errors.shares[i, k]
+            out[at + 2 * n + 2 * n * m] = errors.misfit[i, k]
 
 
 @kernel

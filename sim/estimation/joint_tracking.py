@@ -141,3 +141,9 @@ def follow(joints, angles) -> None:
         slip = own.slip_stiffness[i] * (x - rest[i])
         main = x * (own.stiffness[i] + own.stiffening[i] * x * x)
         own.deflection[i] = main + own.damping[i] * (theta[1, i] - q[1, i]) + slip
+
+
+@kernel
+def unheld(torque, held):
+    """What of a torque friction at rest cannot hold, which holds `held` at most either way [N·m]."""
+    return np.copysign(max(abs(torque) - held, 0.0), torque)

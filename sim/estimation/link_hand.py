@@ -38,6 +38,7 @@ from pendant.settings.schema import ticks
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
+from sim.estimation.joint_tracking import unheld
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.torque_errors import CAUSES, FOLLOW, ZERO, beyond, left_over, noise
 from sim.estimation.transmission_torque import CONTACT
@@ -76,7 +77,7 @@ class LinkHand:
         self._rigid, self._momentum = rigid.record, momentum
         self._known = momentum.record, momentum.errors.record
         self._record = record(
-            felt=(3, arm.n, 1 + CAUSES),  # torque and causes, smoothed, as free-drive began, lately and before
+            felt=(3, arm.n, 1 + CAUSES),  # torque and causes, smoothed, at entry, lately and before
             bias=(3, ZERO),  # of the flange sensor then, axes of F [N, N·m]
             ticks="3i8",  # since then
             lasts=f"{arm.n}i8",  # ticks for which who was felt by a joint may be there still
@@ -104,7 +105,7 @@ class LinkHand:
         Args:
             bias: of the flange sensor (6,), axes of F [N, N·m].
             qd: joint speeds (n,) [rad/s].
-            by_deflection: whose torque comes from the deflection (n,); else it comes from the motor.
+            by_deflection: whose torque comes from the deflection (n,); else from the motor.
         """
         if self._momentum.ready:
             _update(self._record, self._known, self._rigid, (bias, qd, by_deflection))
@@ -196,7 +197,7 @@ def _follow(felt, now, share) -> None:
 
 @kernel
 def powers(qd, tau_hand, tau_certain, friction) -> tuple[float, float, float]:
-    """What a hand does, what of it is certain, and what friction takes [W]: of (n,) joints [rad/s, N·m]."""
+    """Power of a hand, what of it is certain, and what friction takes [W]: of (n,) [rad/s, N·m]."""
     return _power(tau_hand, qd), _power(tau_certain, qd), _power(friction, qd)
 
 
@@ -228,6 +229,7 @@ def _feel(own, known, told, when) -> bool:
             change[0] += drifts[k] * lever
             rest += lever * lever * walked[k]
         own.left[when, i] = left = left_over(errors.shares[i], change[0], change[1:])
-        own.sure[when, i] = beyond(errors, i, (left, change[1:]), (rest, CONTACT))
+        sure = unheld(left, 2.0 * momentum.held[i])  # it may have held as much the other way then
+        own.sure[when, i] = beyond(errors, i, (sure, change[1:]), (rest, CONTACT))
         found = found or own.sure[when, i] != 0.0
     return found

@@ -1,4 +1,4 @@
-"""External torques of the joints by their momentum: a generalised-momentum observer, without accelerations.
+"""External torques of joints by the generalised momentum: an observer without accelerations.
 
 With the links' momentum p = M(q) q' and what is known to drive it, p' = tau_J - f_out + C^T q' - g - J^T w + tau_ext, the
 residual r = K (p - integral(tau_J - f_out + C^T q' - g - J^T w + r) dt) follows tau_ext with a first-order lag of 1 / K. The
@@ -35,7 +35,7 @@ GAIN = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
 READY = 25
 """Ticks after which the observer has forgotten how it began: a dozen of its time constants."""
 FLOOR = 0.004
-"""Deviation of what the model leaves within some tenths of a second, relative to a joint's torque limit."""
+"""Deviation of what the model leaves within tenths of a second, relative to the torque limit."""
 
 
 class Driven(NamedTuple):
@@ -52,10 +52,10 @@ class Driven(NamedTuple):
 
 
 class MomentumObserver:
-    """External torques of n joints, before anything is learned of the gears, and what is known of their error.
+    """External torques of n joints, before gears are learned, and what is known of their error.
 
     With the flange sensor they are those of contacts before it. Without it the configured load counts as a part of the arm, and
-    they are those of all contacts. Of a joint without deflection the motor's torque less its friction is taken.
+    they are those of all contacts. A joint without deflection has the motor's torque less friction.
 
     What gears, encoders and the flange sensor's zero put into them is learned in planned motion while nothing is touched, from
     these torques, in which no payload's error is.
@@ -64,6 +64,7 @@ class MomentumObserver:
         residual: the torques (n,) [N·m].
         errors: what they are wrong by, as learned.
         doubt: standard deviation of a change of the residual within some tenths of a second, for other reasons (n,) [N·m].
+        held: what of it friction may hold either way (n,) [N·m], of a joint that stands and does not tell its deflection.
 
     Args:
         arm: the arm's numbers.
@@ -86,10 +87,11 @@ class MomentumObserver:
             residual=(n,),
             borne=(n,),  # what passes through the gears, with the lag of the torques
             doubt=(n,),
+            held=(n,),
             quiet="i8",  # ticks since something was touched, as far as these torques tell
         )
         own = self.record[0]
-        self.residual, self.doubt, self.errors = own["residual"], own["doubt"], TorqueErrors(arm)
+        self.residual, self.doubt, self.held, self.errors = own["residual"], own["doubt"], own["held"], TorqueErrors(arm)
         own["bare"] = np.concatenate([[body.mass], body.com, body.inertia.ravel()])
         own["output_share"] = arm.frictions.output_share
         own["floor"] = FLOOR * np.array(arm.limits.torque)
@@ -150,12 +152,12 @@ def _update(records, model, driven, state) -> None:
         if own.count < 2:
             own.first[0, i], own.residual[i], own.first[1, i], own.borne[i] = 0.0, 0.0, load, load
         else:
-            # The speed is that of half a tick ago: between this and the last one lies the drive of a tick ago.
+            # The speed is half a tick old: between it and the last one lies the drive of a tick ago.
             follow(own.first[0], own.residual, (p[i] - own.p[i]) / TICK - own.drive[i], i)
             follow(own.first[1], own.borne, own.load[i], i)
         own.p[i], own.drive[i], own.load[i] = p[i], drive[i], load
         _doubt(own, driven, by_deflection, i)
-    look(errors, rigid, own.borne, (driven.q, driven.use[1], with_sensor))
+    look(errors, rigid, (own.borne, own.residual), (driven.q, driven.use[1], with_sensor))
     if own.count < READY:
         begin(errors, own.residual)
     own.quiet = min(own.quiet + 1, SETTLE_TICKS)
@@ -169,18 +171,19 @@ def _update(records, model, driven, state) -> None:
 
 @kernel
 def follow(first, second, now, i) -> None:
-    """A value through the observer and the filter behind it: `second[i]` is as late as the torques."""
+    """A value through observer and the filter behind it: `second[i]` is as late as the torques."""
     first[i] += GAIN * (now - first[i])
     second[i] += GAIN * (first[i] - second[i])
 
 
 @kernel
 def _doubt(own, driven, by_deflection, i) -> None:
-    """How wrong the residual of joint i may be, beyond what its errors' causes make."""
+    """How wrong the residual of joint i may be, beyond what its errors' causes make: a deviation, and what friction may hold."""
     rubs = driven.friction_deviation[i]
     own.doubt[i] = np.sqrt(own.floor[i] ** 2 + (own.output_share * rubs) ** 2)
     if not by_deflection:
-        own.doubt[i] = np.sqrt(own.floor[i] ** 2 + rubs**2 + driven.stiction[i] ** 2)
+        own.doubt[i] = np.sqrt(own.floor[i] ** 2 + rubs**2)
+    own.held[i] = 0.0 if by_deflection else driven.stiction[i]
 
 
 @kernel

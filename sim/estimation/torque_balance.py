@@ -42,7 +42,7 @@ def balance(records, given, known, learns) -> bool:
     """One kernel: to call four takes longer than all that they do.
 
     Args:
-        records: of `joint_tracking`, after `follow`; of `AdaptiveFriction`; of `TransmissionTorque`.
+        records: of `joint_tracking` after `follow`, `AdaptiveFriction`, `TransmissionTorque`.
         given: torques of the rigid model (n,) [N·m], and temperatures as measured (n,) [°C].
         known: as `Known`.
         learns: as `Learns`.
@@ -57,8 +57,8 @@ def balance(records, given, known, learns) -> bool:
     n = tau_dyn.size
     surplus(joints, tau_dyn, friction, transmission)
     spent, borne = np.empty(n), np.empty(n)
-    touched = gears.quiet < SETTLE_TICKS
-    felt = False  # by a joint whose friction is obtained from the model, which does not bear what touches the arm
+    touched = gears.free < SETTLE_TICKS
+    felt = False  # by a joint whose friction comes from the model, which bears no touch
     for i in range(n):
         if not (known.able[0, i] and known.able[2, i]):
             own.surplus[i] = np.nan
@@ -69,13 +69,14 @@ def balance(records, given, known, learns) -> bool:
     rub(friction, (own.theta[1], spent, borne, gears.fused), temperature, learns.friction and not felt)
     gears.ways[1] = own.deflection
     moving = sides(joints, tau_dyn, friction, transmission)
-    fuse(transmission, (friction[0].deviation, own.stiction, own.theta[2]), known.ways, moving and learns.gears)
+    rubbing = friction[0].deviation, own.stiction, friction[0].total, own.theta[2]
+    fuse(transmission, rubbing, known.ways, moving and learns.gears)
     return moving
 
 
 @kernel
 def payload_levers(model, wrenches) -> NDArray[np.float64]:
-    """What 1 kg at the payload's centre takes of each joint at rest (n,) [N·m]; arguments as of `missing_mass`."""
+    """What 1 kg at the payload's centre takes of each joint at rest (n,) [N·m]; as `missing_mass`."""
     rigid = model[0]
     weight = (-rigid.gravity[0], -rigid.gravity[1], -rigid.gravity[2])
     turn = cross(turned(rigid.R, wrenches[0].com), weight)

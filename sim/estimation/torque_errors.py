@@ -4,7 +4,7 @@ Three constants of an arm make torques where nothing is touched, each with a sha
 makes a share of what the gear bears; the ripple of an output encoder, which is the deflection's, goes with the first and the
 second harmonic of its angle (a disc off its centre, and one that is not round); the zero of the flange sensor, fixed in the
 flange, makes torques by the levers of the posture. So the torques without a contact are a linear function of known causes with
-constant shares, and shares that are known little make a doubt that grows with the change of their causes.
+constant shares; shares that are known little make a doubt that grows with their causes' change.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ STIFFNESS_WALK = 2e-3  # of the stiffness error [1/sqrt(s)]
 RIPPLE_WALK = 0.01  # of each harmonic, relative to the ripple's torque [1/sqrt(s)]
 FORCE_WALK, TORQUE_WALK = 0.1, 0.04
 """Of the flange sensor's zero [N/sqrt(s)], [N·m/sqrt(s)]: enough to follow a faulty one that drifts by 0.02 N and 0.02 N·m a
-second (bench `false_contacts`); one that warms up drifts by 0.013 N and 0.001 N·m (assets/robots/)."""
+second (bench `false_contacts`); one that warms up: 0.013 N and 0.001 N·m (assets/robots/)."""
 CORRELATED = 100.0  # ticks over which errors of the torques stay alike
 CARRIED = 0.15
 """Share of what the gears bear that a payload may be wrong by: up to a fifth of a payload, which is most of what they bear. It
@@ -38,7 +38,7 @@ gears is little."""
 FOLLOW = 0.0066
 """Share a tick by which what is felt while nothing is touched follows: a time constant of 0.3 s, as the links' watch has it."""
 WAIT = 60
-"""Ticks until a torque is learned from: a hand that comes is known by then, and nothing is learned of it."""
+"""Ticks until a torque is learned from: a hand that comes is known by then, and not learned."""
 SURE = 3.0  # deviations of a constant that is learned
 
 
@@ -97,16 +97,17 @@ class TorqueErrors:
 
 
 @kernel
-def look(errors, rigid, borne, state) -> None:
+def look(errors, rigid, bears, state) -> None:
     """Causes of this tick, and what is known of their shares.
 
     Args:
         errors: `TorqueErrors.record`.
         rigid: row of the rigid model's recursion.
-        borne: torques through the gears (n,) [N·m].
+        bears: torques through the gears and residuals (n,) [N·m].
         state: output angles (n,) [rad], which joints' torques come from the deflection (n,), and whether the sensor is there.
     """
     own = errors[0]
+    borne, residual = bears
     q, by_deflection, with_sensor = state
     R, jacobian = rigid.R, rigid.jacobian
     # All drift, whether there is something to learn from or not, but never beyond what was believed at first: else an error that
@@ -131,6 +132,8 @@ def look(errors, rigid, borne, state) -> None:
             shares[k] = own.known[at]
             misfit[k] = min(own.most[at], SURE * np.sqrt(own.covariance[at, at]))
         if not by_deflection[i]:
+            # Without a contact it bears what the model says: a push makes no error of its own.
+            causes[0] = borne[i] + residual[i]
             shares[0], misfit[0] = 0.0, own.motor_constant
         misfit[0] += own.link_mass + (0.0 if with_sensor else CARRIED)
 
@@ -162,7 +165,7 @@ def left_over(shares, torque, causes):
 def variance(own, i, causes):
     """Of what these causes make of joint i's torque, as well as their shares are known [N²·m²].
 
-    The covariance is symmetric, so half of it is read: of the joint's own causes, of the zero's, and of both.
+    The covariance is symmetric, so half is read: of the joint's own causes, the zero's, and both.
     """
     P, first, known = own.covariance, ZERO + OWN * i, 0.0
     for k in range(OWN):
@@ -212,9 +215,9 @@ def begin(errors, residual) -> None:
 
 @kernel
 def touched(errors, residual, doubt, by_deflection) -> bool:
-    """Some joint feels more than all causes and the rest may be wrong by, as far as is known now, or such a change.
+    """Some joint feels more than causes and the rest may be wrong by, or such a change.
 
-    What is known little may be large, but it changes no more than its causes do: a hand that comes is seen by that.
+    What is known little may be large, but changes no more than its causes: that shows a hand.
     """
     own, found, change = errors[0], False, np.empty(1 + CAUSES)
     for i in range(residual.size):
@@ -255,7 +258,7 @@ def forget(errors) -> None:
 
 @kernel
 def _learn(own, i, felt, n) -> None:
-    """A Kalman filter's step on torque = sum of causes times shares, of joint i; each joint has one tick in n."""
+    """A Kalman filter's step of joint i on torque = sum of causes times shares: one tick in n."""
     P, size, causes = own.covariance, own.known.size, felt[2:]
     gains = np.zeros(size)
     for k in range(CAUSES):

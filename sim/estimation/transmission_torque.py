@@ -1,4 +1,4 @@
-"""Transmission torque module: what passes through each gear, estimated three ways and fused (AF-3)."""
+"""Transmission torque module: what passes through each gear, told three ways and fused (AF-3)."""
 
 import math
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from sim.compiled.record import record
 Array = NDArray[np.float64]
 
 WAYS = ("dynamics", "deflection", "motor")
-"""From q and the rigid model; from theta and q; from theta and the motor torque, with the friction estimate."""
+"""From q and the rigid model; from theta and q; from theta, motor torque and friction estimate."""
 
 DYNAMICS, DEFLECTION, MOTOR = range(3)
 
@@ -44,6 +44,7 @@ class Rubbing(NamedTuple):
 
     deviation: Array  # of the friction estimate (n,) [N·m]
     stiction: Array  # what a standing joint may hold as well (n,) [N·m], 0 for one that moves
+    total: Array  # friction as estimated (n,) [N·m]
     acceleration: Array  # of the motors (n,) [rad/s²]
 
 
@@ -103,6 +104,7 @@ class TransmissionTorque:
             by_motor=(n,),
             model=(n,),  # standard deviation of the rigid model where nothing is touched
             quiet="i8",  # ticks since some joint felt a contact, at most `SETTLE_TICKS`
+            free="i8",  # ticks since one felt more than friction may be wrong by, too
         )
         own = self._own = self.record[0]
         for name in ("motor_constant", "stiffness", "link_mass"):
@@ -113,7 +115,7 @@ class TransmissionTorque:
         self.stiffer, self.offset, self.ways, self.deviations = (own[k] for k in ("stiffer", "offset", "ways", "deviations"))
         self.fused, self.deviation, self.external = own["fused"], own["deviation"], own["external"]
         self.by_motor = own["by_motor"]
-        own["quiet"] = SETTLE_TICKS
+        own["quiet"] = own["free"] = SETTLE_TICKS
         self._quiet = self.record["quiet"]
         self.forget()
 
@@ -147,17 +149,23 @@ def fuse(transmission, rubbing, use, learns) -> None:
     rubbing = Rubbing(*rubbing)
     own = transmission[0]
     learns = learns and own.quiet == SETTLE_TICKS
-    touched = _compare(own, rubbing, use)
+    touched, pressed = _compare(own, rubbing, use)
     if learns and not touched:
         _correct_spring(own, use)
     own.quiet = 0 if touched else min(own.quiet + 1, SETTLE_TICKS)
+    own.free = 0 if pressed else min(own.free + 1, SETTLE_TICKS)
     _fuse(own, use, own.quiet < SETTLE_TICKS)
 
 
 @kernel
-def _compare(own, rubbing, use) -> bool:
-    """Correct the deflection, and find what the rigid model does not explain: whether something is touched."""
-    friction_deviation, stiction, acceleration = rubbing
+def _compare(own, rubbing, use):
+    """Correct the deflection, and find what the rigid model does not explain.
+
+    Returns:
+        Whether something is touched, and whether it is where friction may be twice what is believed, or none: by the motor's way
+        friction that is missing looks like what stands in the way, and were it not learned, it would stay so.
+    """
+    friction_deviation, stiction, total, acceleration = rubbing
     ways, deviations, external = own.ways, own.deviations, own.external
     n = external.size
     swing = own.swing * LATELY
@@ -165,7 +173,7 @@ def _compare(own, rubbing, use) -> bool:
         swing = max(swing, abs(acceleration[i]))
     own.swing = swing
     shaking = ACCELERATION_FLOOR + ACCELERATION_SHARE * swing
-    touched = False
+    touched, pressed = False, False
     for i in range(n):
         floor, ripple = own.floor[i], own.ripple[i]
         P, x, dynamics = own.covariance[i], ways[1, i], ways[0, i]
@@ -185,14 +193,15 @@ def _compare(own, rubbing, use) -> bool:
             continue
         external[i] = dynamics - ways[other, i]
         allowed = known + (0.5 * ripple) ** 2 if other == 1 else deviations[2, i] ** 2
-        if abs(external[i]) > max(CONTACT * np.sqrt(allowed + own.model[i] ** 2), own.least[i]):
-            touched = True
-    return touched
+        size, bound = abs(external[i]), max(CONTACT * np.sqrt(allowed + own.model[i] ** 2), own.least[i])
+        touched = touched or size > bound
+        pressed = pressed or size - (0.0 if other == 1 else abs(total[i])) > bound
+    return touched, pressed
 
 
 @kernel
 def _correct_spring(own, use) -> None:
-    """Learn stiffness error and offset of the deflection from the rigid model, where nothing is touched."""
+    """Learn stiffness error and offset of the deflection from the model, where nothing touches."""
     for i in range(own.external.size):
         if not (use[0, i] and use[1, i]):
             continue
@@ -216,7 +225,7 @@ def _correct_spring(own, use) -> None:
         P[1, 0] = P[0, 1]
         stiffer = own.stiffer[i] + g0 * error / spread
         own.stiffer[i] = min(max(stiffer, own.softest), own.stiffest)
-        # The offset was learned together with a stiffness that cannot be: it is what goes with the bound.
+        # The offset was learned together with a stiffness that cannot be: it goes with the bound.
         offset = own.offset[i] + g1 * error / spread + (own.stiffer[i] - stiffer) * P[0, 1] / P[0, 0]
         own.offset[i] = min(max(offset, -ripple), ripple)
 
@@ -240,7 +249,7 @@ def _fuse(own, use, contact) -> None:
         outside = own.external[i] if contact else 0.0
         variance = own.model[i] ** 2
         if use[1, i] and own.compared[i] == REMEMBERED:
-            # Without an output angle, though, the model's acceleration is made of this torque itself.
+            # Without an output angle, though, the model's acceleration is made of this torque.
             variance = min(variance, (own.link_mass * ways[0, i]) ** 2 + own.floor[i] ** 2 + own.fast_square[i])
         deviations[0, i] = np.sqrt(variance + outside**2)
         weight, total = weighed(own, use, i, 0)

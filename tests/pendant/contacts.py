@@ -63,7 +63,18 @@ def found(stream: list[Signal], use: ContactUse = USE, limit_: ContactLimits | N
     return result
 
 
-def on_links(link: Signal, torques: Array, doubt: Array, causes: Array, shares: Array, misfit: Array) -> ContactSignals:
-    """A tick in which the links alone are watched; the names as in `ContactSignals`."""
-    numbers = np.concatenate([np.tile(link, 4), torques, causes.ravel(), doubt, shares.ravel(), misfit.ravel()])
-    return ContactSignals(numbers, (False, False, True, True), torques.size)
+def on_links(
+    link: Signal,
+    torques: Array,
+    doubt: Array,
+    causes: tuple[Array, Array, Array],
+    held: Array | None = None,
+) -> ContactSignals:
+    """A tick in which the links alone are watched; `causes` are they, their shares and the misfit, as in `ContactSignals`.
+
+    The arm stands where friction may hold something.
+    """
+    n = torques.size
+    (each, shares, misfit), held = causes, np.zeros(n) if held is None else held
+    numbers = np.concatenate([np.tile(link, 4), torques, each.ravel(), held, doubt, shares.ravel(), misfit.ravel()])
+    return ContactSignals(numbers, (False, False, True, True), n, stands=bool(held.any()))

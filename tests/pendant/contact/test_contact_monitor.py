@@ -221,7 +221,7 @@ def linked(n: int, push: float, begin: int = START, end: int = 10**6) -> list[Es
         size = push if begin <= k < end else 0.0
         link = Signal(-size, 0.0, 0.0, 0.1 * size, 0.0, 9.81)
         torques = rng.normal(0.0, 0.1, 6) + 0.4 * size * np.array([0.2, 1.0, 0.0, 0.0, 0.0, 0.0])
-        now.signals = on_links(link, torques, np.ones(6), *(np.zeros((6, 1)) for _ in range(3)))
+        now.signals = on_links(link, torques, np.ones(6), (np.zeros((6, 1)), np.zeros((6, 1)), np.zeros((6, 1))))
     return result
 
 

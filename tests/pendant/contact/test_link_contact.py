@@ -30,6 +30,7 @@ def tick(
     lever: float = LEVER,
     shares: tuple[float, float] = (0.0, 0.0),
     saturated: float = 0.0,
+    held: np.ndarray | None = None,
 ) -> ContactSignals:
     """Torques on the joints; the force at both points is a tenth of their sum along x, in the other direction.
 
@@ -38,7 +39,7 @@ def tick(
     force = -0.1 * float(torques.sum())
     link = Signal(force, 0.0, 0.0, -0.01 * force, 0.0, 9.81, saturated=saturated)
     causes = np.stack([borne, np.full(6, lever)], axis=1)
-    return on_links(link, torques, DOUBT, causes, np.tile(shares, (6, 1)), np.tile([MISFIT, ZERO], (6, 1)))
+    return on_links(link, torques, DOUBT, (causes, np.tile(shares, (6, 1)), np.tile([MISFIT, ZERO], (6, 1))), held)
 
 
 def stream(n: int, way: tuple[float, ...], *spans: tuple[int, int, float], noise: float = 0.1, seed: int = 0) -> np.ndarray:
@@ -282,3 +283,41 @@ def test_a_release_that_errors_may_hide_is_a_release() -> None:
         found += [] if felt is None else [(k, felt.change)]
     assert [change for _, change in found] == [Change.GAINED, Change.LOST]
     assert 300 < found[1][0] < 300 + HELD + GONE
+
+
+HELD_BACK = np.array([0.0, 8.0, 8.0, 0.0, 0.0, 0.0])
+"""What friction may hold of joints whose torque comes from the motor, while the arm stands [N·m]."""
+
+
+def stood(torques: np.ndarray, held: list[np.ndarray]) -> list[tuple[int, LinkChange]]:
+    watch, found = LinkWatch(), []
+    for k, (row, each) in enumerate(zip(torques, held, strict=True)):
+        signals = tick(row, held=each)
+        watch.sense(signals)
+        felt = watch.step(USE, signals, 1.0)
+        if felt is not None:
+            found.append((k, felt))
+    return found
+
+
+@pytest.mark.parametrize(("size", "seen"), [(20.9, False), (23.1, True)])
+def test_friction_at_rest_is_a_bound_beyond_which_deviations_count(size: float, seen: bool) -> None:
+    """It may hold 8 N·m one way before, 8 the other way now, and 6 deviations of 1 N·m are noise: 22 N·m, not six times 8."""
+    torques = stream(500, (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (START, 500, size), noise=0.01)
+    assert bool(stood(torques, [HELD_BACK] * 500)) is seen
+
+
+def test_a_hand_that_comes_in_a_second_is_told_where_friction_may_hide_it() -> None:
+    """What is felt of it is followed in motion, and not while the arm stands."""
+    torques = stream(1200, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), noise=0.1)
+    torques[:, 1] += np.clip((np.arange(1200) - START) * 0.06, 0.0, 30.0) * (np.arange(1200) < 900)
+    (at, gained), (off, lost) = stood(torques, [HELD_BACK] * 1200)
+    assert (gained.change, lost.change) == (Change.GAINED, Change.LOST)
+    assert START + 22.0 / 0.06 < at < START + 500
+    assert 900 < off < 900 + HELD + GONE
+
+
+def test_what_friction_held_as_the_arm_stood_is_no_contact_as_it_starts() -> None:
+    """The motor lets go of 15 N·m that it held against friction, as the joint begins to slide, and what counts follows then."""
+    torques = stream(900, (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (START, 500, 15.0), noise=0.1)
+    assert not stood(torques, [HELD_BACK] * 500 + [np.zeros(6)] * 400)

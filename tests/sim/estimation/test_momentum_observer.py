@@ -143,6 +143,8 @@ def test_without_deflection_the_motors_torque_is_taken_and_doubted() -> None:
         observer.update(driven, with_sensor=False, valid=True, learn=False)
     assert observer.ready
     assert observer.residual == pytest.approx([0.0, 7.0, 0.0, 0.0, 0.0, 0.0], abs=1e-6)
-    assert observer.doubt[1] > np.hypot(2.0, 4.0) > 2.0 * observer.doubt[0]
+    assert observer.doubt[1] > 2.0 > 1.5 * observer.doubt[0]
+    assert observer.held.tolist() == [0.0, 4.0, 0.0, 0.0, 0.0, 0.0]  # a bound, which is no deviation
+    assert observer.errors.causes[1, 0] == pytest.approx(gravity[1])  # a push is no error of its own
     observer.forget()
     assert not observer.ready

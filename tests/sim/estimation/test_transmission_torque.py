@@ -1,9 +1,10 @@
 """Transmission torque: the fusion by uncertainties, what is learned of the deflection, what counts as a contact."""
 
 import numpy as np
+import pytest
 
 from pendant.tick.modes import TICK
-from sim.estimation.transmission_torque import SETTLE_TICKS, Rubbing, TransmissionTorque, fuse
+from sim.estimation.transmission_torque import DEFLECTION, SETTLE_TICKS, Rubbing, TransmissionTorque, fuse
 from tests.sim.arms import UR5E
 
 N = UR5E.n
@@ -34,10 +35,12 @@ class Gears:
         acceleration: float = 0.0,
         moving: bool = False,
         use: np.ndarray = ALL,
+        friction: float = 0.0,
     ) -> TransmissionTorque:
         for row, value in zip(self.module.ways, (dynamics, deflection, motor), strict=True):
             row[:] = value
-        fuse(self.module.record, Rubbing(np.full(N, friction_deviation), CALM, np.full(N, acceleration)), use, moving)
+        rubbing = Rubbing(np.full(N, friction_deviation), CALM, np.full(N, friction), np.full(N, acceleration))
+        fuse(self.module.record, rubbing, use, moving)
         return self.module
 
 
@@ -257,3 +260,22 @@ def test_without_the_deflection_a_contact_shows_on_the_motor_side() -> None:
     gears = Gears()
     assert not gears.tick(5.0, 0.0, 6.0, friction_deviation=1.0, use=only(0, 2)).contact
     assert gears.tick(5.0, 0.0, 25.0, friction_deviation=1.0, use=only(0, 2)).contact
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("size", "friction", "learned"), [(10.0, 10.0, True), (10.0, 0.0, False), (40.0, 10.0, False)])
+def test_what_friction_may_be_wrong_by_keeps_nobody_from_learning_it(
+    size: float, friction: float, learned: bool, sign: float
+) -> None:
+    """By the motor alone friction that is missing looks like a touch: up to all that is believed of it, it is learned from."""
+    gears, use = Gears(), ALL.copy()
+    use[DEFLECTION] = False
+    module = gears.tick(sign * size, 0.0, 0.0, use=use, friction=-sign * friction)
+    assert module.contact
+    assert (module.record["free"].item() == SETTLE_TICKS) is learned
+
+
+def test_what_the_deflection_feels_is_no_friction() -> None:
+    module = Gears().tick(20.0, 0.0, 0.0, friction=20.0)
+    assert module.contact
+    assert module.record["free"].item() == 0
