@@ -91,7 +91,8 @@ contracts: $(VENV)/dev.stamp
 
 # A fresh clone compiles its kernels and modules once, and not in each worker and process of the tests.
 kernels: $(VENV)/dev.stamp
-	$(BIN)/python -c "import app.cli, app.serving; from app.runs.warm_up import warm_up; warm_up()"
+	$(BIN)/python -c "import app.cli, app.serving; from app.runs.warm_up import warm_up; from pendant_sim import load_arm; \
+		warm_up(); warm_up(load_arm('iiwa7'))"
 
 # All tests that are neither `computing` nor `pushed`.
 paced: $(VENV)/dev.stamp | pictures browser

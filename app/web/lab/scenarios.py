@@ -24,7 +24,7 @@ TOPICS = {
     "Free-drive begins": (
         *("free-drive", "push-to-activate", "presses-in-a-row", "posture-by-hand", "postures-in-a-row", "confirmed-by-push"),
         *("confirmed-within-the-check", "second-gesture", "let-go-too-early", "right-payload", "enabling-device", "bump-ignored"),
-        *("teach-first", "after-a-stop"),
+        *("teach-first", "after-a-stop", "elbow-led"),
     ),
     "Free-drive is refused": (
         *("wrong-payload", "push-not-payload", "another-tool", "balanced", "stored-comparison", "checked-current"),

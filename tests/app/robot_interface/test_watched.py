@@ -127,7 +127,7 @@ def test_emergency_stop_safeguard_and_reduced_are_told_as_the_tables_say(fresh: 
     fresh.press("emergency_stop")
     until(lambda: (reading.getSafetyStatusBits(), reading.getSafetyMode()) == (EMERGENCY | STOPPED, 7))
     until(lambda: reading.getRobotMode() == 3)
-    assert say("brake release") == "Brake releasing"
+    assert say("brake release") == "Failed to execute: brake release"
     assert say("safetymode") == "Safetymode: ROBOT_EMERGENCY_STOP"
     fresh.press("emergency_stop_released")
     until(lambda: (reading.getSafetyStatusBits(), reading.getRobotMode()) == (1, 3))

@@ -25,7 +25,9 @@ PAUSED = Event(Kind.PROGRAM_PAUSED, 7, {"name": "one step", "step": 1})
 
 def robot(step: AnyStep | None = None) -> Robot:
     """One that runs a program of one step, or none."""
-    made = Robot(FreeDrive(JOINTS, RATED, Containment((), {}), JointZones(RATED, RATED), sensor=SensorSpec()), Sequencer())
+    made = Robot(
+        FreeDrive(JOINTS, RATED, Containment((), {}), JointZones(RATED, ((-100.0, 100.0),) * 6), sensor=SensorSpec()), Sequencer()
+    )
     if step is not None:
         made.sequencer.load(Program(name="one step", steps=(step,)))
         made.sequencer.start()
@@ -135,7 +137,7 @@ def test_an_arm_that_a_wall_keeps_is_held_in_free_drive() -> None:
         caught = True  # type: ignore[assignment]
 
     arm = robot()
-    arm.free = Caught(JOINTS, RATED, Containment((), {}), JointZones(RATED, RATED), sensor=SensorSpec())
+    arm.free = Caught(JOINTS, RATED, Containment((), {}), JointZones(RATED, ((-100.0, 100.0),) * 6), sensor=SensorSpec())
     told(arm.follow, ENTERED)
     assert arm.law() is Law.HOLD
     told(arm.follow, LEFT)

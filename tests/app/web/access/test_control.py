@@ -81,7 +81,7 @@ def test_control_is_taken_shown_and_given_back(served: Served, two: Two, loop: F
     assert loop.desk.take().touches == ()
     until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
-    until(lambda: shown(strips, "Window 2 took control", "You have control"), "client 2 has it")
+    until(lambda: shown(strips, "Window 2 has control", "You have control"), "client 2 has it")
 
 
 def test_after_ten_silent_seconds_and_not_before_somebody_else_takes_over(
@@ -130,7 +130,7 @@ def test_whoever_acts_first_after_the_silence_takes_over_by_that(served: Served,
     clock.now += SILENCE
     second.set(served.lab.force._impl.uuid, value=90.0)
     until(lambda: served.hand.cap == 90.0, "it counts")
-    until(lambda: shown(strips, "Window 2 has control", "You have control"), "client 2 has it")
+    until(lambda: shown(strips, "Window 2 took control", "You have control"), "client 2 has it")
 
 
 def test_who_holds_the_arm_is_not_silent(served: Served, two: Two, clock: Clock, loop: FakeLoop) -> None:

@@ -28,7 +28,7 @@ def test_run_pause_go_on_and_stop(served: Served, join: Join, loop: FakeLoop) ->
     assert "No program yet" in bar.line.shown
     teach.mark()
     until(lambda: not bar.run.disabled, "there is a step")
-    assert "Program: 1 step<" in bar.line.shown
+    until(lambda: "Program: 1 step<" in bar.line.shown, "its line")
     client.set(bar.run._impl.uuid, value=True)
     until(lambda: Command.START_PROGRAM in commands(loop), "started")
     loop.mode, loop.program, loop.step = Mode.RUN, ProgramState.RUNNING, 1
