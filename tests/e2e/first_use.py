@@ -83,7 +83,7 @@ class FirstUse:
         if cell.loop.latest().decision.mode is Mode.FREE_DRIVE:
             return
         if cell.loop.latest().decision.mode is Mode.STOP:
-            tap(self.page.get_by_role("button", name="Reset"))
+            tap(self.page.get_by_role("button", name="Reset", exact=True))
             cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
         cell.pass_time(COOL_DOWN)
         enter_free_drive(self.page, cell)

@@ -116,7 +116,7 @@ def test_the_second_client_watches_can_stop_and_takes_over(visit: Visit, cell: C
     second.get_by_role("button", name="EMERGENCY STOP").click()
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped")
     first.get_by_text("Emergency stop", exact=True).first.wait_for()
-    first.get_by_role("button", name="Reset").click()
+    first.get_by_role("button", name="Reset", exact=True).click()
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset by the operator")
     first.get_by_role("button", name="Release").click()
     second.get_by_text("Nobody has control").wait_for()
