@@ -28,7 +28,7 @@ from tests.pendant.estimates import SENSOR, estimate
 from tests.pendant.telling import whole_transition
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
-RATED, RANGES = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0), (3.0,) * 6
+RATED, RANGES = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0), ((-3.0, 3.0),) * 6
 TWO = [0.0, 0.0, 2.0 * GRAVITY]  # what 2 kg need at rest [N]
 ALONE = 0.02
 """Shortest time that the arm may move alone [s]."""
