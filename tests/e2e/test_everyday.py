@@ -74,6 +74,7 @@ def test_stop_from_a_second_window(visit: Visit, cell: Cell, width: int, height:
     first.get_by_text("Emergency stop", exact=True).first.wait_for()
 
 
+@pytest.mark.console("ERR_CONNECTION_REFUSED", "WebSocket connection to")  # the server is started anew
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_save_a_program_restart_and_load_it(visit: Visit, cell: Cell, tmp_path: Path, width: int, height: int) -> None:
     """The page of another server knows nothing of it until the file is loaded; a file that is none gets a line."""
