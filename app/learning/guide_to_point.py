@@ -116,7 +116,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         everywhere = (2.0 * arm.reach,) * 3
         self.observation_space = self._seen = QuantityBox(
             (
-                even("joint_angle", tuple(max(-low, high) for low, high in arm.limits.ends), "rad", "output encoders"),
+                even("joint_angle", tuple(arm.limits.farthest), "rad", "output encoders"),
                 even("joint_speed", tuple(2.0 * speed for speed in arm.limits.speed), "rad/s", "from the encoders"),
                 even("flange_position", everywhere, "m", "of the flange in W, from the measured angles"),
                 even("flange_velocity", (5.0,) * 3, "m/s", "of the flange in W, from the measured angles"),

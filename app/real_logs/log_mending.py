@@ -1,6 +1,5 @@
 """What is mended of a log, and told: order, gaps, units, missing speeds. What cannot be is refused in one line."""
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -140,7 +139,7 @@ def _scale(name: str, columns: dict[str, Array], arm: Arm, told: list[str], *, g
                 columns["t"] = t * factor
                 told.append(f"{words}, by their distance")
                 break
-    if "q" not in given and float(np.abs(q).max()) > 2.0 * max(map(abs, itertools.chain(*arm.limits.ends))):
+    if "q" not in given and float(np.abs(q).max()) > 2.0 * max(arm.limits.farthest):
         columns["q"] = q * (np.pi / 180.0)
         told.append("angles are degrees, by their range")
     if (
@@ -206,8 +205,7 @@ def _slopes(t: Array, q: Array, starts: tuple[int, ...]) -> Array:
 
 def _refuse_impossible(log: JointLog, arm: Arm) -> None:
     """Numbers that no such arm can have."""
-    farthest = [max(-low, high) for low, high in arm.limits.ends]
-    for what, values, limits in (("q", log.q, farthest), ("qd", log.qd, arm.limits.speed)):
+    for what, values, limits in (("q", log.q, arm.limits.farthest), ("qd", log.qd, arm.limits.speed)):
         most, allowed = _most(values), 1.5 * np.array(limits)
         wrong = int((most / allowed).argmax())
         if most[wrong] > allowed[wrong]:

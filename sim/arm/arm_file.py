@@ -104,6 +104,11 @@ class ArmLimits(Sourced, frozen=True):
         """Smallest and largest angle of each joint [rad]."""
         return [(each[0], each[1]) if isinstance(each, list) else (-each, each) for each in self.position]
 
+    @property
+    def farthest(self) -> list[float]:
+        """Largest angle of each joint, either way [rad]."""
+        return [max(-low, high) for low, high in self.ends]
+
 
 class Motors(Sourced, frozen=True):
     """Motors, with the gear."""

@@ -154,17 +154,12 @@ def com_in_joint_frame(arm: Arm, k: int) -> Array:
 
 def tensor_in_joint_frame(arm: Arm, k: int) -> Array:
     """Inertia of link k about its centre of mass, axes of its joint frame (3, 3) [kg·m²]."""
-    tensor = inertia_matrix(arm.inertias.tensor[k])
-    if not arm.chain.origins:
-        return tensor
     R = file_axes(arm, k)
-    return R @ tensor @ R.T
+    return R @ inertia_matrix(arm.inertias.tensor[k]) @ R.T
 
 
 def hulls(arm: Arm) -> list[Capsule]:
     """The arm's collision shapes, in the joint frames of their links."""
-    if not arm.chain.origins:
-        return arm.shapes
 
     def turned(shape: Capsule) -> Capsule:
         R = file_axes(arm, shape.link)

@@ -4,19 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from app import cli
 from app.commands.command_options import setting
 from app.files.checked import BadInput
-
-
-def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    """Run the command in this process; its exit code."""
-    monkeypatch.setattr(sys, "argv", ["pendant", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        cli.main()
-    code = ended.value.code
-    assert isinstance(code, int)
-    return code
+from tests.app.command_line import pendant
 
 
 @pytest.mark.parametrize("command", ["serve", "run", "export", "check", "claims", "replay", "schema", "robots"])

@@ -2,7 +2,6 @@
 
 import copy
 import random
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,6 @@ from typing import Any
 import msgspec
 import pytest
 
-from app import cli
 from app.files.checked import convert, load
 from app.log.recorder import Recorder
 from app.runs.runner import simulate
@@ -18,6 +16,7 @@ from app.session.prepare import prepare
 from app.session.session_file import Session, bundled, find
 from pendant.inputs import NOTHING
 from sim.exchange.desk import Wishes
+from tests.app.command_line import pendant
 
 ODD: tuple[Any, ...] = (None, "", "soon", -1e9, 1e400, [], {}, [[]], {"a": 1}, "\x00", "2020-01-01", -(2**70))
 COUNT = {"session": 60, "text": 60, "settings": 20, "program": 20, "log": 40}
@@ -120,11 +119,9 @@ def bad_logs(chance: random.Random, data: bytes) -> Iterator[bytes]:
 
 
 def refused(arguments: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> str:
-    monkeypatch.setattr(sys, "argv", ["pendant", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        cli.main()
+    code = pendant(monkeypatch, *arguments)
     out, err = capsys.readouterr()
-    assert ended.value.code == 2, (arguments, out, err)
+    assert code == 2, (arguments, out, err)
     assert err.startswith("pendant: ")
     assert err.count("\n") == 1
     assert err.endswith("\n")

@@ -46,7 +46,6 @@ class SettingsTab:
         self._locked = False
         self._lock = threading.Lock()  # controls are made on viser's event loop and brought up to date by the painter
         self._typing: dict[str, asyncio.TimerHandle] = {}
-        self._searching: asyncio.TimerHandle | None = None
         self._before: list[dict[str, Value]] = []  # what each change replaced
         self.controls: dict[str, Any] = {}
         self._rows: list[SettingRow] = []
@@ -183,9 +182,19 @@ class SettingsTab:
         self._refresh(settings)
 
     async def _typed_search(self, _: viser.GuiEvent) -> None:
-        if self._searching is not None:
-            self._searching.cancel()
-        self._searching = asyncio.get_running_loop().call_later(SETTLED, self._find)
+        self._when_typed("search", self._find)
+
+    def _when_typed(self, what: str, act: Callable[[], None]) -> None:
+        """Act once nobody has typed there for a while."""
+        waiting = self._typing.pop(what, None)
+        if waiting is not None:
+            waiting.cancel()
+
+        def settled() -> None:
+            del self._typing[what]
+            act()
+
+        self._typing[what] = asyncio.get_running_loop().call_later(SETTLED, settled)
 
     def _find(self) -> None:
         """Show what the search finds: with each letter, rows would come and go that a page is still told of."""
@@ -244,16 +253,9 @@ class SettingsTab:
             if not typed:
                 self._change({row.name: value})
                 return
-            waiting = self._typing.pop(row.name, None)
-            if waiting is not None:
-                waiting.cancel()
-            self._typing[row.name] = asyncio.get_running_loop().call_later(SETTLED, self._settle, row.name, value)
+            self._when_typed(row.name, lambda: self._change({row.name: value}))
 
         return update
-
-    def _settle(self, name: str, value: Value) -> None:
-        self._typing.pop(name, None)
-        self._change({name: value})
 
     def _change(self, wanted: dict[str, Any]) -> None:
         """Ask for values, and remember what they replace."""

@@ -1,20 +1,11 @@
-import sys
 from pathlib import Path
 
 import jsonschema
 import msgspec
 import pytest
 
-from app import cli
+from tests.app.command_line import pendant
 from tests.app.studies.study_fakes import BASE, FIELDS
-
-
-def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr(sys, "argv", ["pendant", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        cli.main()
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 def test_a_study_is_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

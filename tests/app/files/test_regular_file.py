@@ -1,12 +1,11 @@
 import os
-import sys
 from pathlib import Path
 
 import pytest
 
-from app import cli
 from app.files.bad_input import BadInput
 from app.files.regular_file import open_regular
+from tests.app.command_line import pendant
 
 
 @pytest.mark.parametrize(
@@ -28,10 +27,7 @@ def test_a_pipe_is_refused_by_every_command(
     """Who opened it waited for its other end, and neither Ctrl-C nor SIGTERM ended that."""
     monkeypatch.chdir(tmp_path)
     os.mkfifo("pipe.yaml")
-    monkeypatch.setattr(sys, "argv", ["pendant", *(word.format("pipe.yaml") for word in command)])
-    with pytest.raises(SystemExit) as ended:
-        cli.main()
-    assert ended.value.code == 2
+    assert pendant(monkeypatch, *(word.format("pipe.yaml") for word in command)) == 2
     assert capsys.readouterr().err.strip() == "pendant: pipe.yaml: is a pipe; expected a regular file"
 
 

@@ -1,4 +1,3 @@
-import sys
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -7,7 +6,6 @@ import jsonschema
 import msgspec
 import pytest
 
-from app import cli
 from app.files.checked import BadInput, convert, load
 from app.runs.jobs import Job, run_all
 from app.runs.junit import junit, write
@@ -15,6 +13,7 @@ from app.runs.runner import RunOutcome
 from app.runs.seed_runs import NearestToBound, NotMet, gathered, seeds_in
 from app.session.expectation_watch import Verdict
 from app.session.session_file import KINDS, Session, bundled, find, find_all, schema_of
+from tests.app.command_line import pendant
 
 SHORT: dict[str, Any] = {
     "title": "short",
@@ -30,14 +29,6 @@ def session(**fields: Any) -> Session:
 def files(folder: Path, **sessions: dict[str, Any]) -> None:
     for name, fields in sessions.items():
         (folder / f"{name}.yaml").write_bytes(msgspec.yaml.encode({**SHORT, **fields}))
-
-
-def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr(sys, "argv", ["pendant", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        cli.main()
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 def test_jobs_run_in_processes_and_keep_their_places(tmp_path: Path) -> None:

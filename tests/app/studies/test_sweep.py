@@ -2,20 +2,19 @@
 
 import fcntl
 import os
-import sys
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
 
-from app import cli
 from app.files.bad_input import BadInput
 from app.studies import sweep as sweeping
 from app.studies.data_set import parts, read_data_set
 from app.studies.one_run import CaseOutcome, Task
 from app.studies.row_journal import RowJournal, rows
 from app.studies.sweep import Swept, Workers, sweep
+from tests.app.command_line import pendant
 from tests.app.studies.study_fakes import BASE, FIELDS, base, study
 
 ONE = Workers(1)
@@ -143,14 +142,6 @@ def test_one_sweep_at_a_time_writes(tmp_path: Path) -> None:
         fcntl.flock(held, fcntl.LOCK_EX)
         with pytest.raises(BadInput, match="another sweep writes there"):
             swept(tmp_path)
-
-
-def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr(sys, "argv", ["pendant", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        cli.main()
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
