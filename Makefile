@@ -13,6 +13,7 @@
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
 #   make claims      every claim with its switch and its mutants, into out/claims; 25 minutes at most on two cores
 #   make docs        the pages that programs write, into out/docs; docs/results/README.md
+#   make site        the documentation as a site with search, gallery and Python interface, into out/site
 #   make fuzz        files and messages drawn from their types, and damaged ones, for an hour on all cores (tools/fuzz)
 #   make clean       remove what the above made
 
@@ -39,7 +40,7 @@ unexport PYTHONDONTWRITEBYTECODE
 SIZES ?= -m "not every_size"
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test test-full bench bench-full races races-full soak soak-quick mutate claims docs fuzz clean lint types contracts kernels wheel browser pictures
+.PHONY: run test test-full bench bench-full races races-full soak soak-quick mutate claims docs site fuzz clean lint types contracts kernels wheel browser pictures
 .PHONY: paced computing pushed e2e e2e-full
 
 run: $(VENV)/run.stamp
@@ -170,6 +171,12 @@ mutate: $(VENV)/dev.stamp
 
 claims: $(VENV)/dev.stamp kernels
 	$(BIN)/pendant claims --mutants --out out/claims
+
+# Warnings end it: a link that leads nowhere, a name of the interface that is not found.
+site: $(VENV)/dev.stamp docs
+	$(BIN)/python -m tools.gallery
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@echo "out/site/index.html"
 
 docs: $(VENV)/dev.stamp
 	@for page in modules reactions traceability claims_page results; do $(BIN)/python -m tools.$$page || exit 1; done

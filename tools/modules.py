@@ -15,7 +15,7 @@ def rooms() -> list[str]:
 
 
 def first_line(path: Path) -> str:
-    """What a module says of itself first.
+    """What a module says of itself first, as Markdown.
 
     Raises:
         ValueError: it says nothing.
@@ -23,7 +23,7 @@ def first_line(path: Path) -> str:
     text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
     if not text:
         raise ValueError(f"{path.name} has no docstring")
-    return " ".join(text.split("\n\n")[0].split())
+    return " ".join(text.split("\n\n")[0].split()).replace("[", "\\[")
 
 
 def page() -> str:

@@ -1,0 +1,1 @@
+"""Numbered examples; `python -m tools.gallery` runs each and keeps its picture."""
