@@ -1,8 +1,6 @@
 """Settings in the words of the field: titles of sections, names of rows, what a row says of itself."""
 
-import hashlib
-
-from pendant.all_settings import Settings, describe, value_of
+from pendant.all_settings import describe
 from pendant.settings.schema import SettingRow, Value
 
 CHANGED = "● "
@@ -54,12 +52,6 @@ SAFETY = {
     "enabling.on": "Enabling device",
 }
 """The values of a robot's safety screen, with the names that they have there."""
-
-
-def safety_checksum(settings: Settings) -> str:
-    """Short hash of all that the safety page shows, and of all that is locked while the arm moves: 8 hexadecimal digits."""
-    named = "\n".join(f"{row.name}={value_of(settings, row.name)!r}" for row in describe() if row.locked or row.name in SAFETY)
-    return hashlib.sha256(named.encode()).hexdigest()[:8]
 
 
 def section_of(row: SettingRow) -> str:
