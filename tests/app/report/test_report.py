@@ -314,7 +314,7 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
         t=1.0,
         kind="contact_gained",
         severity="NOTICE",
-        headline="Contact gained: tool",
+        headline="Touched at 8 N: tool",
         guidance="",
         values={"rule": "rise", "steps": 4, "action": "none"},
     )
