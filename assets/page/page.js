@@ -112,7 +112,8 @@
       if ((kept.tabs || []).includes(tab.textContent.trim()) && tab.getAttribute("aria-selected") !== "true") press(tab);
     if (innerWidth > 1000 && (kept.width || innerWidth < 1200)) resize(kept.width || NARROW); };
   // Editing in 3D is over when its tab is left.
-  addEventListener("click", (event) => { const tab = event.isTrusted && event.target.closest && event.target.closest("[role=tab]"); if (!tab || tab.getAttribute("aria-selected") === "true") return;
+  for (const name of ["pointerdown", "click"]) addEventListener(name, (event) => { // a tab is open before its click, which keys make alone
+    const tab = event.isTrusted && event.target.closest && event.target.closest("[role=tab]"); if (!tab || tab.getAttribute("aria-selected") === "true") return;
     let box = tab.closest("[role=tablist]").parentElement; while (box && !at("button,input", box)) box = box.parentElement;
     for (const edits of box ? all("input[type=checkbox]:checked", box) : []) if (labelled(edits) === "Edit in 3D") edits.click(); }, true);
   // A tab opens at its top.

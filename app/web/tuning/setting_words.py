@@ -1,7 +1,8 @@
 """Settings in the words of the field: titles of sections, names of rows, what a row says of itself."""
 
-from pendant.all_settings import describe
-from pendant.settings.schema import SettingRow, Value
+from pendant.all_settings import describe, find
+from pendant.events.event import Event, Kind
+from pendant.settings.schema import SettingError, SettingRow, Value
 
 CHANGED = "● "
 """Stands before the name of a setting that is not as shipped."""
@@ -104,3 +105,22 @@ def found(words: str, rows: list[SettingRow]) -> list[SettingRow]:
         return f"{row.name} {plain} {title_of(section_of(row))} {SAFETY.get(row.name, '')} {row.text} {row.id}".casefold()
 
     return [row for row in rows if all(word in text(row) for word in wanted)]
+
+
+def setting_change(event: Event) -> str:
+    """What an event says of a setting that was changed, or was not: its name and value in words."""
+    name, refused = str(event.values["name"]), event.kind is Kind.SETTING_REFUSED
+    value = event.values["value" if refused else "new"]
+    try:
+        row = find(name)
+    except SettingError:
+        return f"{name}: {value} refused"
+    section, own = section_of(row), row.name.rpartition(".")[2]
+    if row.name == "program.speed" and isinstance(value, float):
+        text = f"Speed {100.0 * value:.0f} %"
+    elif section in ("joints", "axes") and own.lstrip("jr") in (*"xyz", *map(str, range(1, 13))):
+        what = f"Joint {own[1:]}" if section == "joints" else f"{'Turning about' if own[0] == 'r' else 'Moving along'} {own[-1]}"
+        text = f"{what}: {'free' if value else 'locked'}"
+    else:
+        text = f"{SAFETY.get(row.name) or f'{title_of(section)}, {name_of(row).lower()}'}: {told(value, row.unit)}"
+    return f"{text} refused" if refused else text

@@ -2,7 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 
-QUIET = "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(134,142,150,.28)"
+QUIET = (
+    "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(134,142,150,.28);"
+    "--button-hover:rgba(134,142,150,.26)!important;--button-hover-color:inherit!important"
+)
 """How a button looks that needs no eye."""
 
 BELOW, UP = "padding-bottom:8px!important", "margin-top:-52px!important"

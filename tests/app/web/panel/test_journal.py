@@ -59,7 +59,7 @@ def test_the_filter_shows_its_kind_alone(served: Served, join: Join, loop: FakeL
     loop.note(Kind.EMERGENCY_STOP, mode="TEACH")
     until(lambda: journal.table.shown.count("<tr") == 2, "both")
     client.set(journal.filter._impl.uuid, value="Stops and refusals")
-    until(lambda: journal.table.shown.count("<tr") == 1 and "free_drive" not in journal.table.shown, "the stop alone")
+    until(lambda: journal.table.shown.count("<tr") == 1 and "Free-drive, gain" not in journal.table.shown, "the stop alone")
     assert len(FILTERS) == 6
 
 
