@@ -219,9 +219,18 @@ def digest(settings: Settings) -> str:
     return _hashed(settings, _EVERY)
 
 
-def limits_checksum(settings: Settings) -> str:
-    """Short hash of everything that is locked while the arm moves: 8 hexadecimal digits, equal for equal limits."""
-    return _hashed(settings, _LOCKED)
+PERIODS = frozenset({"free_drive.period", "free_drive.restart_period"})
+"""What a safety screen shows though it is not locked."""
+
+
+def concerns_safety(row: SettingRow) -> bool:
+    """Whether a setting is in the safety checksum: it is locked while the arm moves, or a safety screen shows it."""
+    return row.locked or row.name in PERIODS
+
+
+def safety_checksum(settings: Settings) -> str:
+    """Short hash of everything that concerns safety: 8 hexadecimal digits, equal for equal values."""
+    return _hashed(settings, _SAFETY)
 
 
 class _Named:
@@ -233,7 +242,7 @@ class _Named:
         self.lines = "\n".join(f"{name}={{!r}}" for name in names)
 
 
-_EVERY, _LOCKED = _Named(_ROWS.values()), _Named(row for row in _ROWS.values() if row.locked)
+_EVERY, _SAFETY = _Named(_ROWS.values()), _Named(row for row in _ROWS.values() if concerns_safety(row))
 
 
 def _hashed(settings: Settings, named: _Named) -> str:

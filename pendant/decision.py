@@ -66,7 +66,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     zero: Wrench = ZEROS  # subtracted from the flange sensor's values from the next tick on, axes of F [N, N·m]
     reading_zero: Wrench = ZEROS  # F_user that counts as none where forces are told or pushed with, axes of F [N, N·m]
     zero_due: bool = False  # the untouched arm feels what may soon refuse free-drive: the sensor should be zeroed
-    limits: str = ""  # checksum of all limits
+    limits: str = ""  # safety checksum
     static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
     force: ForceMode | None = None  # with which the arm pushes while it moves, under Law.FOLLOW

@@ -1,6 +1,6 @@
 """What a tick's decision tells: put together from the parts in every tick, so that nothing in it can be from an older one."""
 
-from pendant.all_settings import Settings, limits_checksum
+from pendant.all_settings import Settings, safety_checksum
 from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
@@ -33,7 +33,7 @@ class Publisher:
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
         self._settings = settings
-        self._checksum = limits_checksum(settings)
+        self._checksum = safety_checksum(settings)
         self._locks = with_joints(axis_locks(settings.axes), settings.joints)
 
     def step(

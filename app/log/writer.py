@@ -15,7 +15,7 @@ from app.log import foxglove, layout
 from app.log.events_file import line_of
 from app.log.layout import CDR, CODES, STATE, TRUTH, WORDS
 from app.mcap_file.container import Container
-from pendant.all_settings import Settings, describe, digest, limits_checksum, value_of
+from pendant.all_settings import Settings, describe, digest, safety_checksum, value_of
 from pendant.decision import Decision
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event
@@ -187,7 +187,7 @@ class Writer:
                 "robot": arm.name,
                 "seed": str(scenario.seed),
                 "settings": digest(simulation.settings),
-                "limits": limits_checksum(simulation.settings),
+                "limits": safety_checksum(simulation.settings),
                 **notes,
             },
         )

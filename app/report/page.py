@@ -154,7 +154,7 @@ def _identity(summary: Summary) -> list[tuple[str, str]]:
         *([("thinned", f"{summary.thinned}: peaks between these are not in it")] if summary.thinned else []),
         ("payload configured, true", f"{summary.payload_configured:g} kg, {summary.payload_true:g} kg"),
         ("settings", run.get("settings", "")),
-        ("check sum of the limits", summary.limits),
+        ("safety checksum", summary.limits),
         ("versions", ", ".join(f"{name} {run[name]}" for name in names if name in run)),
     ]
 

@@ -13,7 +13,7 @@ from app.log_reading.reader import Log
 from app.report.gathering import Gathered, Peak, Span, from_event
 from app.report.regions import regions
 from app.session.expectation_watch import Verdict
-from pendant.all_settings import describe
+from pendant.all_settings import concerns_safety, describe
 from pendant.event_table import TABLE
 from pendant.events.event import Kind
 from pendant.events.event_row import Effect, Severity
@@ -82,7 +82,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     """All figures of a run. SI units; times from the start of the run."""
 
     run: dict[str, str]  # title, versions, robot, seed, hash of the settings
-    limits: str  # check sum of all limits
+    limits: str  # safety checksum
     note: str = NOT_A_VALIDATION
     duration: float  # [s]
     whole: bool  # the log has its end
@@ -239,6 +239,6 @@ def _stop(log: Log, event: EventLine) -> StopFigures:
 
 
 def _checksum(values: dict[str, Any]) -> str:
-    """Short hash of all limits, those settings that cannot be changed in free-drive: 8 hexadecimal digits."""
-    lines = "\n".join(f"{row.name}={values.get(row.name)!r}" for row in describe() if row.locked)
+    """Short hash of the settings that concern safety: 8 hexadecimal digits."""
+    lines = "\n".join(f"{row.name}={values.get(row.name)!r}" for row in describe() if concerns_safety(row))
     return hashlib.sha256(lines.encode()).hexdigest()[:8]

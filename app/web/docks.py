@@ -1,5 +1,7 @@
 """The page: the pendant on the right, two docks on the left, and what is shown of a snapshot in each of them."""
 
+from collections.abc import Callable
+
 import viser
 
 from app.files.taught_program import Lesson
@@ -143,7 +145,8 @@ class Docks:
         )
         stood = (self.panel.back.ghost, self.teach.ghost, self.jog.ghost, self.contacts.ghost, self.moment)
         own = (self.panel.hit.label, self.contacts.label, self.panel.back.label, self.panel.marks.label)
-        self.labels = Labels([*own, *(ghost.label for ghost in stood)])
+        self.texts: Callable[[], list[viser.LabelHandle]] = list  # of the picture; what draws it gives them
+        self.labels = Labels(lambda: [*own, *(ghost.label for ghost in stood), *self.texts()])
         bar = self.panel.bar
         bar.taught, bar.ended, bar.scripts = self._taught, self.teach.ended, scripts
         self.jog.also(bar.start, self._start)

@@ -93,7 +93,7 @@ class Served(Site):
             scripts=around.scripts,
             keeper=around.keeper,
         )
-        self.panel, self.lab = self.docks.panel, self.docks.lab
+        self.panel, self.lab, self.docks.texts = self.docks.panel, self.docks.lab, lambda: self.scene.texts
         self.control = Control(self.server, self.guard, self._let_go)
         self.preferences = Preferences(self.guard, self.docks.settings_dock, self._paint_page)
         self.keys = Keys(self.server, self.guard, loop, docks=self.docks, preferences=self.preferences)

@@ -112,7 +112,8 @@
       if ((kept.tabs || []).includes(tab.textContent.trim()) && tab.getAttribute("aria-selected") !== "true") press(tab);
     if (innerWidth > 1000 && (kept.width || innerWidth < 1200)) resize(kept.width || NARROW); };
   // Editing in 3D is over when its tab is left.
-  addEventListener("click", (event) => { const tab = event.isTrusted && event.target.closest && event.target.closest("[role=tab]"); if (!tab || tab.getAttribute("aria-selected") === "true") return;
+  for (const name of ["pointerdown", "click"]) addEventListener(name, (event) => { // a tab is open before its click, which keys make alone
+    const tab = event.isTrusted && event.target.closest && event.target.closest("[role=tab]"); if (!tab || tab.getAttribute("aria-selected") === "true") return;
     let box = tab.closest("[role=tablist]").parentElement; while (box && !at("button,input", box)) box = box.parentElement;
     for (const edits of box ? all("input[type=checkbox]:checked", box) : []) if (labelled(edits) === "Edit in 3D") edits.click(); }, true);
   // A tab opens at its top.
@@ -148,29 +149,36 @@
     if (restored && !darkens) { keep("dark", isDark()); document.documentElement.classList.toggle("pd-night", isDark()); } })
     .observe(document.documentElement, { attributes: true, attributeFilter: ["data-mantine-color-scheme"] });
 
-  // The camera: above the floor, and with the whole arm in the picture until somebody moves it. viser's client hands out its camera
-  // and nodes; its picture has y upwards.
-  const FLAT = Math.PI / 2 - 0.03, SEEN = 0.84, FRAMINGS = 6, POINTS = 250, BESIDE = 24, BESIDE_FINGER = 40;
+  // The camera: above the floor, and with the whole arm and the tables in the picture until somebody moves it. viser's client hands
+  // out its camera and nodes; its picture has y upwards.
+  const FLAT = Math.PI / 2 - 0.03, SEEN = 0.84, SEEN_TABLE = 0.95, WIDE = 1, FRAMINGS = 6, POINTS = 250, BESIDE = 24, BESIDE_FINGER = 40;
   const viewer = () => { const it = window.__viserMutable; return it && it.camera && it.cameraControl ? it : null; };
   const inPicture = (target) => Boolean(target.closest && target.closest("canvas"));
-  // Calls `see` with points of the arm: 0 in the middle of the picture, 1 at its border; true of one of them ends it.
-  const overArm = (see) => { const { nodeRefFromName, camera } = viewer(), point = camera.position.clone();
+  const ARM = /^\/arm\/[^/]+$/, WORLD = /^\/world\/\d+$/;
+  // Calls `see` with points of what is named so: 0 in the middle of the picture, 1 at its border; true of one of them ends it.
+  const over = (named, see) => { const { nodeRefFromName, camera } = viewer(), point = camera.position.clone();
     return Object.entries(nodeRefFromName).some(([name, node]) => { let met = false;
-      if (node && /^\/arm\/[^/]+$/.test(name)) node.traverse((part) => { const shape = part.isMesh && part.geometry.attributes.position; if (met || !shape) return;
+      if (node && named.test(name)) node.traverse((part) => { const shape = part.isMesh && part.geometry.attributes.position; if (met || !shape) return;
+        if (!part.geometry.boundingSphere) part.geometry.computeBoundingSphere();
+        if (part.geometry.boundingSphere.radius * part.matrixWorld.getMaxScaleOnAxis() > WIDE) return; // a plane has no end
         for (let i = 0, step = Math.max(1, Math.floor(shape.count / POINTS)); i < shape.count && !met; i += step)
           met = see(point.fromBufferAttribute(shape, i).applyMatrix4(part.matrixWorld).project(camera)); });
       return met; }); };
-  let above = null, framings = FRAMINGS, framed = "";
+  const widest = (named) => { let most = 0; over(named, (point) => { most = Math.max(most, Math.abs(point.x), Math.abs(point.y)); return false; }); return most; };
+  let above = null, framings = FRAMINGS, framed = "", measuring = false, nearest = 0;
   const look = () => { const it = viewer(); if (!it || !it.canvas) return;
-    const control = it.cameraControl, { width, height } = it.canvas.getBoundingClientRect(), size = `${width} ${height}`;
+    const control = it.cameraControl, { width, height } = it.canvas.getBoundingClientRect(), size = `${width} ${height} ${Object.keys(it.nodeRefFromName).filter((name) => WORLD.test(name))}`;
     if (control !== above) { above = control; const target = it.camera.position.clone();
       control.maxPolarAngle = FLAT;
       control.addEventListener("update", () => { control.getTarget(target); if (target.y < 0) control.moveTo(target.x, 0, target.z, false); }); }
     if (framed !== size && framings >= 0) { framed = size; framings = FRAMINGS; }
-    if (framings <= 0 || !width) return;
-    let widest = 0; overArm((point) => { widest = Math.max(widest, Math.abs(point.x), Math.abs(point.y)); return false; });
-    if (!widest) return;
-    framings -= 1; if (widest > SEEN) control.dollyTo(control.distance * Math.min(widest / SEEN, 1.6), false); };
+    if (framings <= 0 || !width || measuring) return;
+    measuring = true; // once what was moved last has been drawn
+    requestAnimationFrame(() => requestAnimationFrame(() => { measuring = false;
+      const arm = framings > 0 && viewer() === it && widest(ARM); if (!arm) return;
+      const beyond = Math.max(arm / SEEN, widest(WORLD) / SEEN_TABLE), far = control.distance;
+      if (framings === FRAMINGS) nearest = far;
+      framings -= 1; control.dollyTo(Math.max(nearest, far * Math.min(Math.max(beyond, 0.6), 1.6)), false); })); };
   const reframe = () => { const it = viewer(); if (!it) return; it.resetCameraPose(true); framings = FRAMINGS; };
   for (const name of ["pointerdown", "wheel"]) addEventListener(name, ({ target }) => { if (inPicture(target)) framings = -1; }, { capture: true, passive: true });
   // viser asks for the default of a press on the arm to be left out where that is not to be had, which the browser tells as an error.
@@ -180,7 +188,7 @@
   addEventListener("pointerdown", ({ target, clientX, clientY, button, pointerType }) => { const it = viewer(); if (!it || button || !inPicture(target)) return;
     const { left, top, width, height } = it.canvas.getBoundingClientRect(), room = pointerType === "touch" ? BESIDE_FINGER : BESIDE;
     const x = clientX - left, y = clientY - top;
-    if (!overArm((point) => Math.hypot(width * (point.x + 1) / 2 - x, height * (1 - point.y) / 2 - y) < room)) return;
+    if (!over(ARM, (point) => Math.hypot(width * (point.x + 1) / 2 - x, height * (1 - point.y) / 2 - y) < room)) return;
     pressing += 1; it.cameraControl.enabled = false; }, true);
   for (const name of ["pointerup", "pointercancel"]) addEventListener(name, () => { const it = pressing && viewer(); if (!it) return;
     pressing = 0; setTimeout(() => { if (!pressing) it.cameraControl.enabled = true; }, 0); }, true);
@@ -200,6 +208,21 @@
         else document.documentElement.dispatchEvent(new KeyboardEvent("keydown", { key: "x", code: "KeyX", bubbles: true })); });
       document.body.append(button); }
     if (button) button.hidden = !needed; };
+
+  // The list of the program's steps has the height of its dock that what stands above and below it leaves, down to where steps are
+  // inserted.
+  let fitted = null, reached = "";
+  const fit = () => { const list = at(".pd-steps"); if (!list || !list.offsetHeight) return;
+    let box = list.parentElement; while (box && !/auto|scroll/.test(getComputedStyle(box).overflowY)) box = box.parentElement;
+    const below = box && all("button", box).filter((one) => one.offsetHeight && /^(✕|After)$/.test(one.textContent.trim()));
+    const last = below && (below.find((one) => one.textContent.trim() === "After") || below[0]); if (!last) return;
+    const used = last.getBoundingClientRect().bottom - box.getBoundingClientRect().top + box.scrollTop - list.offsetHeight;
+    document.documentElement.style.setProperty("--pd-steps", `${Math.floor(box.clientHeight - used - 8)}px`);
+    // The step that is done, or the chosen one, is in sight when it becomes that, and when the list is drawn anew.
+    const one = at(".pd-now", list) || at("[aria-checked=true]", list); if (!one || (list === fitted && one.textContent === reached)) return;
+    fitted = list; reached = one.textContent;
+    const { top, bottom } = one.getBoundingClientRect(), room = list.getBoundingClientRect();
+    if (top < room.top) list.scrollTop -= room.top - top; else if (bottom > room.bottom) list.scrollTop += bottom - room.bottom; };
 
   // A script has the numbers of its lines beside it.
   const number = (text) => { let side = text.previousElementSibling; if (!side || !side.classList.contains("pd-lines")) { side = made("div", "", "presentation"); side.className = "pd-lines";
@@ -317,5 +340,5 @@
     reload.addEventListener("click", () => location.reload());
     const lost = made("div", "pd-lost", "alert"); lost.append(document.createElement("span"), reload);
     document.body.prepend(skip, lost);
-    setInterval(() => { nameAll(); listen(); advance(); look(); view(); spare(); }, BEAT); });
+    setInterval(() => { nameAll(); listen(); advance(); look(); view(); spare(); fit(); }, BEAT); });
 })();

@@ -52,8 +52,8 @@ FREE_DRIVE: dict[Kind, EventRow] = {
     Kind.HOLD_SILENT: EventRow(
         Effect.INFO,
         Severity.WARNING,
-        "Button counts as released",
-        "Nothing heard from it for {value:.2f} s, limit {limit:.2f} s. Check the connection.",
+        "Connection slow: button treated as released",
+        "Nothing heard from it for {value:.2f} s, limit {limit:.2f} s.",
         ("value", "limit"),
         reaction="The same follows as when the button is let go.",
     ),

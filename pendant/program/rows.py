@@ -3,6 +3,17 @@
 from pendant.events.event import Kind
 from pendant.events.event_row import WALL, Effect, EventRow, Severity, denied, info
 
+ACTIONS = {
+    "none": "The arm goes on",
+    "stop": "The arm stops",
+    "contact_pose": "The arm goes to where it touched",
+    "retract": "The arm retreats",
+    "reverse": "The arm goes back to where the move began",
+    "turn": "The tool turns",
+    "position": "The arm goes to a position",
+}
+"""What an arm does at a contact, by `Until.then`; "none" where nothing was asked for."""
+
 
 def _touched(headline: str) -> EventRow:
     """A change in contact: force on the object in B, the tool's speed [mm/s], its pose at the first suspicious sample."""
@@ -31,8 +42,9 @@ def _touched(headline: str) -> EventRow:
         Effect.INFO,
         Severity.NOTICE,
         headline,
-        "The force changed by {force:.1f} N (rule: {rule}). Action: {action}.",
+        "The force changed by {force:.1f} N, seen by the rule {rule}. {action}.",
         keys,
+        words=ACTIONS,
         reaction="In a program, the action that its step asks for; else none.",
         way_out="By itself. The next change is told anew.",
     )
@@ -107,10 +119,10 @@ PROGRAM: dict[Kind, EventRow] = {
         ("what", "moved", "reason"),
         reaction="The arm brakes.",
         way_out="Jog again. Where the reason is no wish of yours, mend it first.",
-    ),
+    )._replace(words={"no word from the button": "Lost contact with the page"}),
     Kind.JOG_REFUSED: denied("Not jogged: {what}", "{reason}.", ("what", "reason")),
     # Change in contact (CD-13, CD-16)
-    Kind.CONTACT_GAINED: _touched("Contact gained: {part}"),
+    Kind.CONTACT_GAINED: _touched("Touched at {force:.0f} N: {part}"),
     Kind.CONTACT_LOST: _touched("Contact lost: {part}"),
     Kind.CONTACT_RESISTANCE: _touched("Resistance changed: {part}"),
     Kind.CONTACT_CLAMPING: _touched("Clamping: {part}"),

@@ -23,7 +23,7 @@ class WallSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     BASIC = ("on", "resistance", "tether", "operation_radius", "tether_reaction")
 
     on: Annotated[bool, _switch("FD-24", "virtual walls and areas are active")] = True
-    new_anchors: Annotated[bool, _switch("VW-3", "walls get new anchors, each by its policy")] = True
+    new_anchors: Annotated[bool, _switch("VW-3", "walls may move with what they are fixed to, each by its policy")] = True
     sizes: Annotated[bool, _switch("VW-8", "sizes of walls follow posture or payload; otherwise the smallest holds")] = True
     resistance: Annotated[bool, _switch("VW-7", "walls resist the arm before it reaches them")] = True
     tether: Annotated[bool, _switch("VW-4", "a sphere round the flange, the tether, follows the user's hand")] = True

@@ -5,7 +5,7 @@ import math
 import msgspec
 import pytest
 
-from pendant.all_settings import Settings, apply, describe, digest, find, limits_checksum, value_of
+from pendant.all_settings import Settings, apply, describe, digest, find, safety_checksum, value_of
 from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import SettingError, SettingRow, Value, ticks
 from tests.items import each_of
@@ -532,11 +532,12 @@ def other(row: SettingRow) -> Value:
     return row.low if row.high == row.default else row.high
 
 
-def test_the_limits_checksum_is_of_what_is_locked() -> None:
-    shipped = limits_checksum(Settings())
-    sums = {row.name: limits_checksum(apply(Settings(), {row.name: other(row)})) for row in describe()}
-    assert {name for name, value in sums.items() if value == shipped} == {row.name for row in describe() if not row.locked}
-    assert len(set(sums.values()) - {shipped}) == sum(row.locked for row in describe())
+def test_the_safety_checksum_is_of_what_is_locked_and_of_the_periods_of_free_drive() -> None:
+    shipped = safety_checksum(Settings())
+    sums = {row.name: safety_checksum(apply(Settings(), {row.name: other(row)})) for row in describe()}
+    concerned = {row.name for row in describe() if row.locked} | {"free_drive.period", "free_drive.restart_period"}
+    assert {name for name, value in sums.items() if value != shipped} == concerned
+    assert len(set(sums.values()) - {shipped}) == len(concerned)
     assert len(shipped) == 8
     assert shipped != digest(Settings())
 

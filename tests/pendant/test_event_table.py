@@ -189,8 +189,8 @@ def test_a_contact_is_told_with_force_rule_and_action() -> None:
     """CD-16."""
     values = {**EXAMPLE, "force": 17.62, "rule": "slow", "steps": 20, "action": "none", "part": "tool"}
     assert render(Event(Kind.CONTACT_GAINED, 0, values)) == (
-        "Contact gained: tool",
-        "The force changed by 17.6 N (rule: slow). Action: none.",
+        "Touched at 18 N: tool",
+        "The force changed by 17.6 N, seen by the rule slow. The arm goes on.",
     )
 
 

@@ -5,7 +5,7 @@ from typing import cast
 
 import pytest
 
-from pendant.all_settings import Settings, apply, limits_checksum
+from pendant.all_settings import Settings, apply, safety_checksum
 from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
@@ -97,7 +97,7 @@ class Parts:
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "reading_zero": (0.3,) * 6, "zero_due": False,
             "slack": "slack", "doubtful": "doubtful",
-            "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
+            "limits": safety_checksum(self.settings), "speed": 0.4, "static": False,
             "force": "force", "offset": "offset", "script_done": 7, "signs": 0, "pull": "pull", "taken": "taken",
         } | changes  # fmt: skip
 

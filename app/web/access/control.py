@@ -119,7 +119,7 @@ class Control:
         if holder == number:
             if self._asking is not None:
                 return f"Window {self._asking + 1} asks for control", "You have it. Give hands it over.", Colour.AMBER
-            lapsed = f"Idle for {SILENCE:.0f} s: others may take it." if left == 0.0 else ""
+            lapsed = "Idle: others may take it." if left == 0.0 else ""
             return "You have control", lapsed, Colour.GREEN
         if holder is None:
             why = "The connection closed. " if self._closed else ""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import viser
 
 from app.web.panel.state_words import SEVERITY_COLOURS
+from app.web.tuning.setting_words import setting_change
 from app.web.widgets import svg
 from app.web.widgets.html import Html
 from app.web.widgets.svg import Colour
@@ -116,7 +117,7 @@ class Journal:
                 lines.append(svg.LogLine("", "Started over", Colour.GREY, "", 0))
                 moments = {name: tick for name, tick in moments.items() if tick > 0}
                 continue
-            time, text = f"{row.event.tick / TICK_RATE:.2f} s", render(row.event)[0]
+            time, text = f"{row.event.tick / TICK_RATE:.2f} s", _text(row.event)
             moment = f"{time} {text}"
             moments.setdefault(moment, row.event.tick)
             lines.append(svg.LogLine(time, text, SEVERITY_COLOURS[TABLE[row.event.kind].severity], moment, row.count))
@@ -128,6 +129,10 @@ class Journal:
             if before in offered and self.moment.value != before:
                 self.moment.value = before
         return changed
+
+
+def _text(event: Event) -> str:
+    return setting_change(event) if event.kind in (Kind.SETTING_CHANGED, Kind.SETTING_REFUSED) else render(event)[0]
 
 
 def _subject(event: Event) -> tuple[object, ...]:

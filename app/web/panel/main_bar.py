@@ -90,8 +90,8 @@ class MainBar:
         if decision.program not in (ProgramState.RUNNING, ProgramState.PAUSED):
             return f"Program: {len(steps)} step{'s' if len(steps) != 1 else ''}" if steps else NO_PROGRAM
         if self.scripts is not None and self.scripts.state is not None:
-            return f"Script {self._name}, line {self.scripts.line}"
-        return f"Program {self._name}, step {decision.step}"
+            return f'Script "{self._name}", line {self.scripts.line}'
+        return f'Program "{self._name}", step {decision.step}'
 
     def _go_on(self) -> None:
         """Begin the program, or let what is paused go on."""

@@ -15,11 +15,10 @@ from app.web.panel.way_back import WayBack
 from app.web.running import Running
 from app.web.scene.arm_marks import ArmMarks
 from app.web.scene.hit_mark import HitMark
-from app.web.tuning.setting_words import safety_checksum
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Bar, Colour
-from pendant.all_settings import Settings
+from pendant.all_settings import Settings, safety_checksum
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command

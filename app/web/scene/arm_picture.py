@@ -12,7 +12,7 @@ from trimesh.visual.material import PBRMaterial
 
 from app.web.scene.arm_marks import ball_radius
 from app.web.scene.force_ellipsoid import ForceEllipsoid
-from app.web.scene.stage import DARK, LIGHT, Shadow, lay
+from app.web.scene.stage import DARK, LIGHT, Shadow, Top, lay, top_of
 from app.web.scene.touch_arrow import TouchArrow
 from app.web.scene.wall_pictures import WallPictures
 from sim.arm.arm_file import Arm
@@ -31,6 +31,9 @@ TOOL = "/arm/tool"
 
 BELIEVED_APART = 0.05
 """A configured payload that differs from the true one by less is not shown beside it [kg]."""
+
+SHADED = 3
+"""Objects that the arm's shadow is shown on."""
 
 TOUCHES = 4
 """Touches shown at once."""
@@ -84,6 +87,11 @@ class Scene:
         self.walls = WallPictures(server)
         self.shadow = Shadow(server.scene)
 
+    @property
+    def texts(self) -> list[viser.LabelHandle]:
+        """What is written in it, by precedence, in W."""
+        return [*(arrow.label for arrow in self.arrows), *self.walls.texts, self._believed_label]
+
     def show(self, snapshot: Snapshot) -> bool:
         """Draw a snapshot, in one batch that clients apply together; True if anything changed."""
         changed = False
@@ -94,7 +102,7 @@ class Scene:
                 kind, row, _ = key.split(" ", 2)
                 poses = snapshot.truth_links if kind == "link" else snapshot.truth_objects
                 changed |= self._place(key, node, poses[int(row)])
-            changed |= self.shadow.show(snapshot.truth_links[:, :3], float(self._floor.position[2]))
+            changed |= self.shadow.show(snapshot.truth_links[:, :3], float(self._floor.position[2]), self._tops(snapshot))
             changed |= self._show_fingers(snapshot)
             changed |= self._show_payload(snapshot)
             changed |= self._show_believed(snapshot)
@@ -104,6 +112,11 @@ class Scene:
         if changed:
             self._server.flush()
         return changed
+
+    def _tops(self, snapshot: Snapshot) -> list[Top]:
+        """What the shadow can fall on beside the floor."""
+        found = [top_of(size, snapshot.truth_objects[row]) for row, size in self._boxes.items()]
+        return [top for top in found if top is not None][:SHADED]
 
     def _change_to(self, scenario: Scenario) -> None:
         """Put away the tool and the world of the last scenario, and show those of `scenario`."""
@@ -211,6 +224,7 @@ class Scene:
     def _add_world(self, scenario: Scenario) -> None:
         level = min([0.0, *(thing.position[2] for thing in scenario.world if isinstance(thing, Plane) and not any(thing.rpy))])
         self._floor.position = (0.0, 0.0, level)  # so that it hides nothing that stands on a lower floor
+        self._boxes: dict[int, Array] = {}  # sizes of those that a shadow falls on, by their row
         for row, thing in enumerate(scenario.world):
             if isinstance(thing, Plane) and thing.position[2] == level and not any(thing.rpy):
                 continue  # it is the floor
@@ -222,6 +236,7 @@ class Scene:
                     f"/world/{row}", shape.vertices, shape.faces, color=colour, cast_shadow=False, receive_shadow=False
                 )
                 continue
+            self._boxes[row] = size
             self._nodes[f"object {row} {thing.name}"] = self._server.scene.add_box(
                 f"/world/{row}",
                 dimensions=size,

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from app.web.scene.surfaces import plane, surface
 from pendant.tick.pose import ORIGIN, Pose, Quaternion, Vector, dot, product, quaternion, turned
@@ -11,7 +12,10 @@ from pendant.walls.barrier import Place
 from pendant.walls.containment import TETHER, WallState
 from pendant.walls.definitions import AnyBorder, Wall
 from pendant.walls.shapes import HalfSpace
+from sim.arm.frames import matrix_from_quaternion
 from sim.exchange.snapshot import Snapshot
+
+Array = NDArray[np.float64]
 
 ROOT = "/walls"
 """Name of the node that all of them lie in; its axes are B."""
@@ -55,6 +59,11 @@ class WallPictures:
         self._drawn: dict[str, DrawnWall] = {}
         self._made = 0
 
+    @property
+    def texts(self) -> list[viser.LabelHandle]:
+        """What is written at them, in W."""
+        return [drawn.label for drawn in self._drawn.values()]
+
     def show(self, snapshot: Snapshot) -> bool:
         """Draw those of a snapshot; True if anything changed."""
         changed = False
@@ -62,6 +71,8 @@ class WallPictures:
         if (seen := base.tobytes().hex()) != self._base:
             self._base, changed = seen, True
             self._root.position, self._root.wxyz = base[:3], base[3:]
+            while self._drawn:  # their texts are in W
+                self._drawn.popitem()[1].remove()
         states = {state.name: state for state in snapshot.decision.walls}
         names = [border.name for border, _ in snapshot.places]
         for name in [name for name in self._drawn if name not in names]:
@@ -73,7 +84,7 @@ class WallPictures:
                 if drawn is not None:
                     drawn.remove()
                 self._made += 1
-                drawn = self._drawn[border.name] = DrawnWall(self._server.scene, f"{ROOT}/{self._made}", border)
+                drawn = self._drawn[border.name] = DrawnWall(self._server.scene, f"{ROOT}/{self._made}", border, base)
             changed |= drawn.show(place, states.get(border.name))
         nearest = max((state for state in states.values() if state.name != TETHER), key=lambda s: s.distance, default=None)
         for name, drawn in self._drawn.items():
@@ -84,8 +95,9 @@ class WallPictures:
 class DrawnWall:
     """One wall or area: surface, outline, the way that is left with a label at its end, the force on the part."""
 
-    def __init__(self, scene: viser.SceneApi, name: str, border: AnyBorder) -> None:
+    def __init__(self, scene: viser.SceneApi, name: str, border: AnyBorder, base: Array) -> None:
         self._border = border
+        self._foot, self._upright = base[:3], matrix_from_quaternion(base[3:])
         shape = surface(border.shape, WALL_SIDE if isinstance(border, Wall) else AREA_SIDE)
         self.surface = scene.add_mesh_simple(
             f"{name} surface",
@@ -102,7 +114,7 @@ class DrawnWall:
         )
         nothing = np.zeros((1, 2, 3), dtype=np.float32)
         self.way = scene.add_line_segments(f"{name} way", nothing, GREY, thickness=1.5, thickness_units="screen", visible=False)
-        self.label = scene.add_label(f"{name} label", border.name, visible=False, anchor="top-center")
+        self.label = scene.add_label(f"/texts{name}", border.name, visible=False, anchor="top-center")
         self.force = scene.add_arrows(
             f"{name} force", nothing, AMBER, shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False
         )
@@ -210,7 +222,7 @@ class DrawnWall:
             return True
         if self.label.text != told[0]:
             self.label.text = str(told[0])
-        self.label.position = self._centre if state is None else _nearest(state)
+        self.label.position = self._foot + self._upright @ np.array(self._centre if state is None else _nearest(state))
         if state is not None:
             self.way.points = np.array([[state.p, _nearest(state)]], dtype=np.float32)
         return True

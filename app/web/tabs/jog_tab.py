@@ -127,7 +127,7 @@ class JogTab:
         decision = snapshot.decision
         for event in fresh:
             if event.kind in (Kind.JOG_ENDED, Kind.JOG_REFUSED):
-                self._told = ". ".join(render(event))
+                self._told = _arrived(event) or ". ".join(render(event))
         may = decision.mode in (Mode.TEACH, Mode.NORMAL) and decision.phase is Phase.OFF
         count = len(self._names) if self.chosen == "joint" else 2 * TURNS
         changed = [enable(button, may and axis < count) for (axis, _), button in self.buttons.items()]
@@ -182,7 +182,7 @@ class JogTab:
         if which == HOME:
             return MoveThere(q=self._home, name="home")
         if which == THERE:
-            return MoveThere(q=self._angles(), name="the sliders")
+            return MoveThere(q=self._angles(), name="these joint angles")
         if which == STRAIGHT:
             x, y, z = (value / 1000.0 for value in self.at.value)
             w, i, j, k = quaternion_from_matrix(rotation_from_rpy([math.radians(angle) for angle in self.turned.value])).tolist()
@@ -280,6 +280,14 @@ class JogTab:
     def _stop(self) -> None:
         self._press = None
         self._loop.desk.stop_jogging()
+
+
+def _arrived(event: Event) -> str:
+    """What is told of a jog that came to where it was to go: there, or how far it went; "" of another."""
+    if event.kind is not Kind.JOG_ENDED or event.values["reason"] != "done":
+        return ""
+    _, leads, place = str(event.values["what"]).partition("to ")
+    return f"At {place}." if leads else f"Done: {event.values['moved']}."
 
 
 def _farthest(arm: Arm) -> list[tuple[float, float]]:

@@ -11,11 +11,11 @@ from app.files.checked import BadInput
 from app.web.running import Running
 from app.web.tuning.limit_presets import AS_SHIPPED, limit_presets, preset_of, told_limits
 from app.web.tuning.presets import as_file, changes, from_file, presets
-from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, safety_checksum, section_of, title_of, told
+from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, section_of, title_of, told
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
-from pendant.all_settings import Settings, describe, find, value_of
+from pendant.all_settings import Settings, describe, find, safety_checksum, value_of
 from pendant.events.event import Event, Kind
 from pendant.limits.axis_locks import JOINTS
 from pendant.settings.schema import SettingRow, Value

@@ -1,9 +1,8 @@
 """Settings in the words of the field: titles of sections, names of rows, what a row says of itself."""
 
-import hashlib
-
-from pendant.all_settings import Settings, describe, value_of
-from pendant.settings.schema import SettingRow, Value
+from pendant.all_settings import describe, find
+from pendant.events.event import Event, Kind
+from pendant.settings.schema import SettingError, SettingRow, Value
 
 CHANGED = "● "
 """Stands before the name of a setting that is not as shipped."""
@@ -56,12 +55,6 @@ SAFETY = {
 """The values of a robot's safety screen, with the names that they have there."""
 
 
-def safety_checksum(settings: Settings) -> str:
-    """Short hash of all that the safety page shows, and of all that is locked while the arm moves: 8 hexadecimal digits."""
-    named = "\n".join(f"{row.name}={value_of(settings, row.name)!r}" for row in describe() if row.locked or row.name in SAFETY)
-    return hashlib.sha256(named.encode()).hexdigest()[:8]
-
-
 def section_of(row: SettingRow) -> str:
     """The section that a setting is shown in."""
     return ".".join(row.name.split(".")[: 2 if row.name.startswith("limits.") else 1])
@@ -112,3 +105,22 @@ def found(words: str, rows: list[SettingRow]) -> list[SettingRow]:
         return f"{row.name} {plain} {title_of(section_of(row))} {SAFETY.get(row.name, '')} {row.text} {row.id}".casefold()
 
     return [row for row in rows if all(word in text(row) for word in wanted)]
+
+
+def setting_change(event: Event) -> str:
+    """What an event says of a setting that was changed, or was not: its name and value in words."""
+    name, refused = str(event.values["name"]), event.kind is Kind.SETTING_REFUSED
+    value = event.values["value" if refused else "new"]
+    try:
+        row = find(name)
+    except SettingError:
+        return f"{name}: {value} refused"
+    section, own = section_of(row), row.name.rpartition(".")[2]
+    if row.name == "program.speed" and isinstance(value, float):
+        text = f"Speed {100.0 * value:.0f} %"
+    elif section in ("joints", "axes") and own.lstrip("jr") in (*"xyz", *map(str, range(1, 13))):
+        what = f"Joint {own[1:]}" if section == "joints" else f"{'Turning about' if own[0] == 'r' else 'Moving along'} {own[-1]}"
+        text = f"{what}: {'free' if value else 'locked'}"
+    else:
+        text = f"{SAFETY.get(row.name) or f'{title_of(section)}, {name_of(row).lower()}'}: {told(value, row.unit)}"
+    return f"{text} refused" if refused else text

@@ -1,6 +1,6 @@
 """Texts in the picture that keep apart."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import viser
@@ -13,35 +13,38 @@ WIDE, HIGH = 0.25, 0.05
 
 
 class Labels:
-    """Of texts that would lie over each other the later ones stand higher. Lives on viser's event loop.
+    """Of texts that would lie over each other the later ones stand higher. Lives in the painter.
 
     Args:
-        labels: by precedence; each has its place in W, and whoever made it may move it at any time.
+        labels: gives those that there are now, by precedence; each has its place in W, and whoever made it may move it at any
+            time.
     """
 
-    def __init__(self, labels: Sequence[viser.LabelHandle]) -> None:
+    def __init__(self, labels: Callable[[], Sequence[viser.LabelHandle]]) -> None:
         self._labels = labels
-        self._meant: list[Array] = [np.full(3, np.nan) for _ in labels]  # where whoever made it wants it
-        self._put: list[Array] = [np.full(3, np.nan) for _ in labels]  # where it stands
+        self._put: dict[str, tuple[Array, Array]] = {}  # of each by its name, where whoever made it wants it, and where it stands
 
     def show(self) -> bool:
         """Move the visible ones apart; True if anything changed."""
         taken: list[Array] = []
-        changed = False
-        for k, label in enumerate(self._labels):
-            if not label.visible or not label.text:
-                continue
+        changed, put = False, self._put
+        self._put = {}
+        for label in self._labels():
             here = np.array(label.position, dtype=np.float64)  # a copy: viser changes its own
-            if not np.array_equal(here, self._put[k]):
-                self._meant[k] = here
-            place = self._meant[k].copy()
-            while any(_over(place, other) for other in taken):
-                place[2] = max(other[2] for other in taken if _over(place, other)) + HIGH
-            if not np.array_equal(place, here):
-                label.position = place
-                changed = True
-            self._put[k] = place
-            taken.append(place)
+            meant, stood = put.get(label.name, (here, here))
+            if not np.array_equal(here, stood):
+                meant = here
+            place = meant.copy()
+            if label.visible and label.text:
+                while any(_over(place, other) for other in taken):
+                    place[2] = max(other[2] for other in taken if _over(place, other)) + HIGH
+                taken.append(place)
+                if not np.array_equal(place, here):
+                    label.position = place
+                    changed = True
+            else:
+                place = here
+            self._put[label.name] = meant, place
         return changed
 
 

@@ -2,8 +2,14 @@
 
 from collections.abc import Iterable, Sequence
 
-QUIET = "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(134,142,150,.28)"
+QUIET = (
+    "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(134,142,150,.28);"
+    "--button-hover:rgba(134,142,150,.26)!important;--button-hover-color:inherit!important"
+)
 """How a button looks that needs no eye."""
+
+BELOW, UP = "padding-bottom:8px!important", "margin-top:-52px!important"
+"""Of a button 44 pixels high what is below it, and what brings the next one up beside it."""
 
 
 def sheet(stop: str, free_drive: str, quiet: Iterable[str], *, large: Iterable[str] = ()) -> str:
@@ -55,9 +61,8 @@ def pairs(buttons: list[str]) -> str:
     both = f"{left},{right}"
     return (
         f'<style data-pd-held="{" ".join(buttons)}">'
-        f"div:has(>:is({left})){{width:calc(50% - 15px)!important;margin-right:0!important}}"
-        f"div:has(>:is({right})){{width:calc(50% - 15px)!important;margin-left:calc(50% + 3px)!important;"
-        "margin-top:-52px!important}"
+        f"div:has(>:is({left})){{width:calc(50% - 15px)!important;margin-right:0!important;{BELOW}}}"
+        f"div:has(>:is({right})){{width:calc(50% - 15px)!important;margin-left:calc(50% + 3px)!important;{BELOW};{UP}}}"
         f":is({both}){{height:44px!important;font-size:13px;padding:0 4px;touch-action:pan-y;user-select:none;{QUIET}}}</style>"
     )
 
@@ -67,9 +72,9 @@ def row(buttons: Sequence[str], shares: Sequence[float], *, held: str) -> str:
     room = f"(100% - {24 + 6 * (len(buttons) - 1)}px)"
     rules = ""
     for place, (button, share) in enumerate(zip(buttons, shares, strict=True)):
-        left, up = sum(shares[:place]), "margin-top:-52px!important;" if place else ""
+        left, up = sum(shares[:place]), f"{UP};" if place else ""
         rules += (
-            f'div:has(>[id="{button}"]){{width:calc({room}*{share:g})!important;{up}'
+            f'div:has(>[id="{button}"]){{width:calc({room}*{share:g})!important;{BELOW};{up}'
             f"margin-left:calc(12px + {room}*{left:g} + {6 * place}px)!important;margin-right:0!important}}"
         )
     every = ",".join(f'[id="{button}"]' for button in buttons)

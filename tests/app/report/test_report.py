@@ -227,9 +227,9 @@ def test_forces_are_held_against_every_body_region(summary: Summary) -> None:
     assert skull.transient is None
 
 
-def test_the_check_sum_is_of_the_limits_alone(log: Log, summary: Summary) -> None:
+def test_the_safety_checksum_is_of_what_concerns_safety_alone(log: Log, summary: Summary) -> None:
     values = dict(log.settings[0][1])
-    values["free_drive.period"] = 9.0  # no limit: it may be changed in free-drive
+    values["program.speed"] = 0.5
     log.settings.append((9, values))
     assert summarise(log).limits == summary.limits
     log.settings.append((9, {**values, "limits.activation.flange_speed.max": 0.03}))
@@ -314,7 +314,7 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
         t=1.0,
         kind="contact_gained",
         severity="NOTICE",
-        headline="Contact gained: tool",
+        headline="Touched at 8 N: tool",
         guidance="",
         values={"rule": "rise", "steps": 4, "action": "none"},
     )

@@ -92,7 +92,7 @@ def test_a_contact_is_told_with_its_numbers() -> None:
         "x": 0.0, "y": 0.0, "z": 0.3, "action": "none",
         "posture": "0.2000 0.2000 0.2000 0.2000 0.2000 0.2000",
     }  # fmt: skip
-    assert render(event)[0] == "Contact gained: tool"
+    assert render(event) == ("Touched at 7 N: tool", "The force changed by 7.0 N, seen by the rule difference. The arm goes on.")
     assert bench.step().contacts == ()
 
 

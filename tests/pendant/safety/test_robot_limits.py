@@ -197,11 +197,11 @@ def test_switched_off_there_are_no_limits() -> None:
     assert bench.last.mode is Mode.FREE_DRIVE
 
 
-def test_the_limits_checksum_is_on_every_decision() -> None:
+def test_the_safety_checksum_is_on_every_decision() -> None:
     bench = Bench()
     first = bench.step().limits
     assert len(first) == 8
-    bench.step(Inputs(settings={"free_drive.period": 5.0}))
+    bench.step(Inputs(settings={"program.speed": 0.5}))
     assert bench.step().limits == first
     bench.step(Inputs(settings={"robot_limits.reduced.joint_speeds.j4": 0.5}))
     assert bench.step().limits != first

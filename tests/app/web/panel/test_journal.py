@@ -59,7 +59,7 @@ def test_the_filter_shows_its_kind_alone(served: Served, join: Join, loop: FakeL
     loop.note(Kind.EMERGENCY_STOP, mode="TEACH")
     until(lambda: journal.table.shown.count("<tr") == 2, "both")
     client.set(journal.filter._impl.uuid, value="Stops and refusals")
-    until(lambda: journal.table.shown.count("<tr") == 1 and "free_drive" not in journal.table.shown, "the stop alone")
+    until(lambda: journal.table.shown.count("<tr") == 1 and "Free-drive, gain" not in journal.table.shown, "the stop alone")
     assert len(FILTERS) == 6
 
 
@@ -77,12 +77,12 @@ def test_a_silence_that_was_a_plain_release_is_taken_off_the_log_and_the_panel(l
     still.panel.holds.hold(3)
     loop.advance(0.6)
     loop.note(Kind.HOLD_SILENT, value=0.502, limit=0.5)
-    assert "Button counts as released" in log(loop, still)
-    assert still.panel.said.headline == "Button counts as released"
+    assert "Connection slow: button treated as released" in log(loop, still)
+    assert still.panel.said.headline == "Connection slow: button treated as released"
     loop.advance(0.2)
     still.panel.holds.lift(3)
-    assert "Button counts as released" not in log(loop, still)
-    assert still.panel.said.headline != "Button counts as released"
+    assert "Connection slow: button treated as released" not in log(loop, still)
+    assert still.panel.said.headline != "Connection slow: button treated as released"
     assert not still.docks.journal.forget(loop.log.since(0)[-1])
 
 
@@ -95,7 +95,7 @@ def test_of_two_silences_one_may_have_been_a_plain_release(loop: FakeLoop, still
         loop.advance(0.1 if again else 3.0)
         still.panel.holds.lift(3)
     shown = log(loop, still)
-    assert "Button counts as released" in shown
+    assert "Connection slow: button treated as released" in shown
     assert "2 ×" not in shown
 
 

@@ -34,7 +34,7 @@ def test_run_pause_go_on_and_stop(served: Served, join: Join, loop: FakeLoop) ->
     loop.mode, loop.program, loop.step = Mode.RUN, ProgramState.RUNNING, 1
     loop.note(Kind.PROGRAM_LOADED, name="taught", steps=1)
     until(lambda: not bar.pause.disabled and not bar.stop.disabled and bar.run.disabled, "it runs")
-    until(lambda: "Program taught, step 1" in bar.line.shown, "told")
+    until(lambda: "Program &quot;taught&quot;, step 1" in bar.line.shown, "told")
     client.set(bar.pause._impl.uuid, value=True)
     until(lambda: Command.PAUSE_PROGRAM in commands(loop), "paused")
     loop.program = ProgramState.PAUSED

@@ -6,9 +6,8 @@ from collections.abc import Callable
 import pytest
 
 from app.web.server import Served
-from app.web.tuning.setting_words import safety_checksum
 from app.web.widgets.svg import Colour
-from pendant.all_settings import Settings, apply
+from pendant.all_settings import Settings, apply, safety_checksum
 from pendant.events.event import Kind
 from pendant.freedrive.periods import Remaining
 from pendant.inputs import Button, Command
@@ -199,7 +198,7 @@ def test_the_wall_that_the_arm_is_nearest_to_is_told(loop: FakeLoop, still: Serv
     assert "<dt>tether, elbow</dt><dd>3 mm left</dd>" in still.panel.numbers.shown
 
 
-def test_the_checksum_of_the_limits_is_shown(loop: FakeLoop, still: Served) -> None:
+def test_the_safety_checksum_is_shown(loop: FakeLoop, still: Served) -> None:
     still.docks.show(loop.latest())
     assert safety_checksum(Settings()) in still.panel.numbers.shown
     loop.settings = apply(Settings(), {"free_drive.gain": 2.0})

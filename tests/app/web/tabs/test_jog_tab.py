@@ -76,6 +76,11 @@ def test_the_tab_tells_what_became_of_the_last_press(served: Served, join: Join,
     until(lambda: "Hold a button: the arm moves until you let go." in hand.tab.said.shown, "how")
     loop.note(Kind.JOG_ENDED, what="tool z +", moved="12 of 50 mm", reason="let go")
     until(lambda: "Jogging tool z + ended after 12 of 50 mm. Let go." in hand.tab.said.shown, "how it ended")
+    for what, told in (("to home", "At home."), ("straight to the pose", "At the pose."), ("tool z +", "Done: 50 of 50 mm.")):
+        loop.note(Kind.JOG_ENDED, what=what, moved="50 of 50 mm", reason="done")
+        until(lambda told=told: told in hand.tab.said.shown, "it is there")
+    loop.note(Kind.JOG_ENDED, what="tool z +", moved="12 of 50 mm", reason="no word from the button")
+    until(lambda: "Lost contact with the page." in hand.tab.said.shown, "why")
     client.set(hand.tab.steps._impl.uuid, value="50 mm, 50°")
     until(lambda: "the arm stops after 50 mm or 50°" in hand.tab.said.shown, "how far")
     loop.mode = Mode.STOP

@@ -8,8 +8,8 @@ import pytest
 from app.web.server import Served
 from app.web.tabs.settings_tab import BASIC, VIEWS
 from app.web.tuning.presets import as_file, from_file, presets
-from app.web.tuning.setting_words import CHANGED, SAFETY, SECTIONS, safety_checksum, section_of, title_of
-from pendant.all_settings import Settings, apply, describe
+from app.web.tuning.setting_words import CHANGED, SAFETY, SECTIONS, section_of, title_of
+from pendant.all_settings import Settings, apply, describe, safety_checksum
 from pendant.limits.axis_locks import JOINTS
 from pendant.tick.modes import Mode
 from tests.app.web.fake_loop import FakeLoop

@@ -10,7 +10,7 @@ def test_texts_at_one_place_stand_above_each_other_by_precedence_and_come_back(s
     scene = still.server.scene
     places = ((0.1, 0.2, 0.3), (0.1, 0.2, 0.31), (0.1, 0.2 + WIDE, 0.3), (0.1, 0.2, 0.3))
     labels = [scene.add_label(f"/test/{k}", "text", position=place) for k, place in enumerate(places)]
-    apart = Labels(labels)
+    apart = Labels(lambda: labels)
     assert apart.show()
     assert not apart.show()
     heights = [float(label.position[2]) for label in labels]
@@ -24,3 +24,8 @@ def test_texts_at_one_place_stand_above_each_other_by_precedence_and_come_back(s
     labels[1].visible = True
     apart.show()
     assert [float(label.position[2]) for label in labels[1:]] == [0.31, 0.3, 0.31 + HIGH]
+    for label in labels[:3]:
+        label.remove()
+    del labels[:3]
+    assert apart.show(), "what has been removed takes no room"
+    assert labels[0].position[2] == 0.3
