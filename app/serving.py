@@ -4,6 +4,7 @@ import webbrowser
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -12,13 +13,14 @@ import msgspec
 
 from app.ending import ending
 from app.files.checked import BadInput
-from app.files.library import robots
+from app.files.library import robots, shipped
 from app.kept_setup import Cell, Keeper, check_cell, keeper_for
 from app.log.live import LiveRecording
 from app.log.recording_plan import ALL, RecordingPlan
 from app.log_reading.playback import Player
 from app.log_reading.reader import files_of, read
 from app.mcap_file.mending import repair
+from app.real_logs.against import Against
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.interfaces import JOINTS, RobotInterfaces
@@ -28,13 +30,16 @@ from app.runs.warm_up import warm_up
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import FIRST_START
 from app.urscript.running.script_runner import ScriptRunner
-from app.web.access.listening import access_through, free_port
+from app.web.access.listening import Access, access_through, free_port
 from app.web.access.site import Site
 from app.web.arm_change import BroughtArm, ReadyArm, meshes_of
+from app.web.log_replay import LogReplay
 from app.web.replay import Replay
 from app.web.server import Served
 from app.web.server import serve as serve_web
+from pendant.inputs import NOTHING
 from sim.arm.arm_file import Arm
+from sim.exchange.desk import Wishes
 from sim.run.loop import Loop
 from sim.run.troubles import reason_of
 
@@ -111,13 +116,44 @@ def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: 
     for file in files_of(path):
         repair(file)
     player = Player(read(path))
-    access = access_through(host)
     meshes = meshes_of(player.log.arm)
+    with _shown(partial(Replay, player, meshes), host=host, port=port, usual=usual) as shown:
+        if open_browser:
+            webbrowser.open(shown.link)
+        yield shown
+
+
+@contextmanager
+def log_shown_until_interrupted(found: Against, prepared: Prepared, *, usual: int) -> Iterator[Site]:
+    """Show what became of a log that was held against the controller, on this machine alone.
+
+    Args:
+        found: of the log.
+        prepared: what the controller believed in.
+        usual: port, when it is free; else any.
+
+    Raises:
+        BadInput: no model can be built of it, or no port is free.
+    """
+    simulation = simulate(prepared)
+    simulation.tick(Wishes(NOTHING, (), ()))
+    meshes = meshes_of(found.arm) if shipped(found.arm.name, "robots") else {}
+    page = partial(LogReplay, found, replace(simulation.snapshot(), scenario=prepared.scenario), meshes=meshes)
+
+    def at(access: Access, port: int) -> LogReplay:
+        return page(access=access, port=port)
+
+    with _shown(at, host="127.0.0.1", port=None, usual=usual) as shown:
+        yield shown
+
+
+@contextmanager
+def _shown(page: Callable[[Access, int], Site], *, host: str, port: int | None, usual: int) -> Iterator[Site]:
+    """A page on which nothing is simulated; the body runs once it is up; then wait for Ctrl-C or SIGTERM."""
+    access = access_through(host)
     with ending() as end:
-        shown = Replay(player, meshes, access, free_port(access.host, port, usual))
+        shown = page(access, free_port(access.host, port, usual))
         try:
-            if open_browser:
-                webbrowser.open(shown.link)
             yield shown
             end.asked.wait()
         finally:

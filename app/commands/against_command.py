@@ -8,7 +8,18 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.commands.command_options import AnyFile, Config, LogColumns, LogEffort, Set, example, set_up, setting
+from app.commands.command_options import (
+    PORT,
+    AnyFile,
+    Config,
+    LogColumns,
+    LogEffort,
+    Set,
+    announce,
+    example,
+    set_up,
+    setting,
+)
 from app.ending import ending
 from app.session.session_file import Setup
 
@@ -16,7 +27,7 @@ AGAINST_EXAMPLES = example(
     "pendant against robot_data.csv --robot ur10e",
     "pendant against run.csv --robot ur10e --columns t,q,qd,current,-12 --out against",
     "pendant against bag.mcap --config cell.yaml",
-    "pendant against out/log.mcap",
+    "pendant against out/log.mcap --page",
 )
 
 
@@ -28,7 +39,8 @@ def against_(
     columns: LogColumns = None,
     effort: LogEffort = "torque",
     set_: Set = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for a page and two CSV files.", show_default=False)] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for a report and two CSV files.", show_default=False)] = None,
+    page: Annotated[bool, typer.Option("--page", help="Replay it in the web app: the measured arm, and the model's.")] = False,
     any_file: AnyFile = False,
 ) -> None:
     """Hold a log of a real arm against the model: torques, friction as it is learned, contacts that would have been told.
@@ -61,3 +73,8 @@ def against_(
     if out is not None:
         write(found, out)
         console.print(f"\nagainst.html, against.csv and contacts.csv are in {escape(str(out))}")
+    if page:
+        from app.serving import log_shown_until_interrupted
+
+        with log_shown_until_interrupted(found, prepared, usual=PORT) as site:
+            announce(f"Showing {found.name}", site.link, on_a_network=False)

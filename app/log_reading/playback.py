@@ -1,8 +1,9 @@
 """Moving through a recording: a place in time that can run, and the snapshot that belongs to it. No physics."""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import msgspec
@@ -23,27 +24,17 @@ from sim.gripping.finger_drive import GripperState
 
 
 @dataclass(slots=True)
-class Player:
-    """Where in a log we are. Times in s from the start of the run.
+class Playback(ABC):
+    """A place in time, from 0 to `end` [s], that can run."""
 
-    Raises:
-        BadInput: the log has no picture to show.
-    """
-
-    log: Log
-    time: float = 0.0
-    speed: float = 1.0
-    playing: bool = False
-
-    def __post_init__(self) -> None:
-        """Check that there is something to play."""
-        if not len(self.log.picture_ticks) or not len(self.log):
-            raise BadInput(self.log.path.name, "", ABSENT, "holds no tick to show")
+    time: float = field(default=0.0, kw_only=True)
+    speed: float = field(default=1.0, kw_only=True)
+    playing: bool = field(default=False, kw_only=True)
 
     @property
+    @abstractmethod
     def end(self) -> float:
         """The last time."""
-        return self.log.last_tick * TICK
 
     def advance(self, seconds: float) -> None:
         """Let `seconds` of the clock pass; at the end it pauses."""
@@ -54,6 +45,27 @@ class Player:
     def jump(self, time: float) -> None:
         """Go to a time, or to the nearest there is."""
         self.time = min(max(time, 0.0), self.end)
+
+
+@dataclass(slots=True)
+class Player(Playback):
+    """Where in a recording we are. Times from the start of the run.
+
+    Raises:
+        BadInput: the log has no picture to show.
+    """
+
+    log: Log
+
+    def __post_init__(self) -> None:
+        """Check that there is something to play."""
+        if not len(self.log.picture_ticks) or not len(self.log):
+            raise BadInput(self.log.path.name, "", ABSENT, "holds no tick to show")
+
+    @property
+    def end(self) -> float:
+        """The last time."""
+        return self.log.last_tick * TICK
 
     @property
     def row(self) -> int:

@@ -42,6 +42,7 @@ class Against:
     started: dict[str, Residuals]  # of `STARTS`, over the first `WATCHED` seconds of motion
     told: list[LogNotice] = field(default_factory=list)
     rows: list[Array] = field(default_factory=list)  # of `table`
+    drifts: list[Array] = field(default_factory=list)  # of `drift`
     external: Array = field(default_factory=lambda: np.zeros(0))  # (n,) root mean square [N·m]
     largest: Array = field(default_factory=lambda: np.zeros(0))  # (n,) [N·m]
     force: tuple[float, float] | None = None  # on the flange, root mean square and largest [N]
@@ -51,6 +52,11 @@ class Against:
         """(k, 1 + 5 n + 3): time [s], then for each joint angle [rad], measured, predicted, predicted with fixed friction and
         external torque [N·m], then the force on the flange in B [N]."""
         return np.concatenate(self.rows)
+
+    @property
+    def drift(self) -> Array:
+        """(k, n): by how much the model's arm is beside the measured one at the times of `table` [rad]; see `ModelDrift`."""
+        return np.concatenate(self.drifts)
 
 
 def hold_against(log: JointLog, prepared: Prepared, advance: Progress) -> Against:
@@ -80,6 +86,7 @@ def hold_against(log: JointLog, prepared: Prepared, advance: Progress) -> Agains
     every, ticks = max(1, -(-round(log.seconds / TICK) // ROWS)), round(log.seconds / TICK)
     done, squares, forces, sensed = 0, np.zeros(arm.n), 0.0, 0
     found.largest = np.zeros(arm.n)
+    drift = controller.drift()
     for block in in_ticks(log, arm):
         part = slice(block.run_in, None)
         t, q, temperature = block.t[part], block.q[part], block.temperature[part]
@@ -91,7 +98,12 @@ def hold_against(log: JointLog, prepared: Prepared, advance: Progress) -> Agains
             if watched.moved < WATCHED:
                 watched.add(t, temperature, Estimates(*(each[part] for each in other.follow(block)[0])))
         found.told += told
-        found.rows.append(_rows(t, q, out, fixed)[(-done) % every :: every])
+        chosen = slice((-done) % every, None, every)
+        if block.run_in:
+            drift.begin()
+        apart = drift.add(out.left, out.driven, out.speed, holds=controller.breakaway)
+        found.rows.append(_rows(t, q, out, fixed)[chosen])
+        found.drifts.append(drift.angles(q[chosen], apart[chosen]))
         squares += (out.felt**2).sum(axis=0)
         found.largest = np.maximum(found.largest, np.abs(out.felt).max(axis=0))
         size = np.linalg.norm(out.force[:, :3], axis=1)

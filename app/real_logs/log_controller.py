@@ -14,6 +14,7 @@ from pendant.safety.collision import Collisions
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
+from sim.identification.model_drift import ModelDrift
 from sim.motion.moves import Reference
 from sim.sensing.sensor_drift import sensor_spec
 from sim.sensing.sensors import Sample
@@ -41,9 +42,14 @@ class Estimates(NamedTuple):
     force: Array  # (k, 6) on the flange, axes of B; NaN where the log has none [N, N·m]
 
     @property
+    def driven(self) -> Array:
+        """What the model without friction leaves of the measured torque (k, n) [N·m]."""
+        return self.tau_m - self.rotor - self.rigid
+
+    @property
     def left(self) -> Array:
         """What model and learned friction leave of the measured torque (k, n) [N·m]."""
-        return self.tau_m - self.rotor - self.rigid - self.friction
+        return self.driven - self.friction
 
 
 class LogNotice(NamedTuple):
@@ -69,7 +75,7 @@ class LogController:
         arm, settings = prepared.arm, prepared.settings
         made = Simulation(arm, prepared.scenario, settings)
         self._estimator, self._sources, self._watch = made.estimator, made.contact_sources, made.watch
-        self._rigid, constants = made.dynamics.recursion, made.calibration
+        self._dynamics, self._rigid, constants = made.dynamics, made.dynamics.recursion, made.calibration
         self._settings, self._looks = settings, looks
         known: SensorSpec = sensor_spec(arm)
         self._monitor, self._collisions = ContactMonitor(known), Collisions(tuple(arm.chain.joints))
@@ -84,6 +90,15 @@ class LogController:
     def friction(self) -> Array:
         """Terms of the friction as learned (n, TERMS)."""
         return self._estimator.friction.terms
+
+    @property
+    def breakaway(self) -> Array:
+        """What a standing joint may hold by friction as learned (n,) [N·m]."""
+        return self._estimator.friction.breakaway
+
+    def drift(self) -> ModelDrift:
+        """Of the rigid model and the rotors that it believes in."""
+        return ModelDrift(self._dynamics, self._rotor)
 
     def follow(self, ticks: Ticks) -> tuple[Estimates, list[LogNotice]]:
         """What is estimated in these ticks, and what would have been told.
@@ -134,8 +149,8 @@ class LogController:
         if not planned:
             self._collisions.rest()
             return told
-        moves = max(estimate.qd.max(), -estimate.qd.min()) > MOVING
-        hit = self._collisions.step(estimate, settings.collision, moves=bool(moves))
+        moves = max(map(abs, estimate.qd.tolist())) > MOVING
+        hit = self._collisions.step(estimate, settings.collision, moves=moves)
         if hit is not None:
             self._collisions.rest()  # the arm would have been stopped, and this force is there when it is reset
             values = hit.values

@@ -52,7 +52,7 @@ class Residuals:
         """Take in a block of k ticks at times `t` (k,) with temperatures (k, n); returns the fixed friction there (k, n)."""
         fixed = np.empty_like(out.friction)
         slide_along(self._fixed.record, (out.speed, out.tau_J, temperature), fixed)
-        driven = out.tau_m - out.rotor - out.rigid
+        driven = out.driven
         moves = np.abs(out.speed) > GATE
         squares = np.stack([out.tau_m, driven, driven - fixed, out.left]) ** 2 * moves
         step = round(1.0 / TICK)

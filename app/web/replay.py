@@ -13,7 +13,8 @@ from app.log_reading.playback import Player, snapshot_at
 from app.web.access.listening import Access
 from app.web.access.site import Site
 from app.web.panel.state_words import FIGURES, SAFETY_WORDS, SEVERITY_COLOURS, WORDS, pull_row, user_row
-from app.web.recordings.event_marks import EventMarks, moment
+from app.web.recordings.event_marks import moment
+from app.web.recordings.time_line import TimeLine
 from app.web.scene.arm_picture import Scene
 from app.web.widgets import style, svg
 from app.web.widgets.drawn_parts import DrawnParts
@@ -32,7 +33,6 @@ MOST_EVENTS = 1000
 FRAMES_A_PLOT = 15
 """The mark of the time in the plots is moved with every so many pictures."""
 
-SPEEDS = ("0.1 ×", "0.5 ×", "1 ×", "2 ×", "5 ×")
 SECONDS = {"x": uplot.Scale(time=False)}
 
 
@@ -49,7 +49,6 @@ class Replay(Site):
     def __init__(self, player: Player, meshes: Mapping[str, bytes], access: Access, port: int) -> None:
         super().__init__(access, port, Troubles(lambda kind, values: None))
         self.player = player
-        self._set = -1.0  # where we have put the slider ourselves
         self._before = time.monotonic()
         self._frame, self._marked = 0, -1.0
         log = player.log
@@ -57,8 +56,6 @@ class Replay(Site):
         self.parts = DrawnParts(self.server.gui, self.troubles)
         self._controls()
         self._plots()
-        for control in (self.play, self.line, self.speed, self.marks.choice):
-            self.guard.for_anyone(control)
         self.guard.open(self.server, frozenset(), lambda client: None)
         self.start_drawing()
 
@@ -83,13 +80,7 @@ class Replay(Site):
         word, colour = WORDS[decision.mode]
         self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour))
         self.facts.show(svg.facts(_numbers(player, snapshot), FIGURES))
-        at = round(player.time, 2)
-        if self.line.value != at:
-            self._set = at
-            self.line.value = at
-        label = "Pause" if player.playing else "Play"
-        if self.play.label != label:
-            self.play.label = label
+        self.time_line.show()
 
     def _controls(self) -> None:
         gui, player = self.server.gui, self.player
@@ -97,12 +88,7 @@ class Replay(Site):
         Html(gui, style.sheet("none", "none", ["none"]))  # no stop and no free-drive here
         gui.set_panel_label(f"replay · {log.run.get('title', log.path.name)}")
         self.light = Html(gui)
-        self.play = gui.add_button("Play")
-        self.line = gui.add_slider("Time [s]", min=0.0, max=max(round(player.end, 2), 0.01), step=0.01, initial_value=0.0)
-        self.speed = gui.add_button_group("Speed", SPEEDS)
-        self.speed.value = "1 ×"
-        self.marks = EventMarks(gui, self.line, player.jump)
-        self.marks.show(log.events, player.end)
+        self.time_line = TimeLine(gui, player, log.events, self.guard.for_anyone)
         self.facts = Html(gui)
         if log.missing:
             Html(gui, svg.note("Not whole", f"Of this recording {log.missing}.", Colour.AMBER))
@@ -110,21 +96,6 @@ class Replay(Site):
             Html(gui, svg.fine_print(f"Thinned: {log.thinned}."))
         gui.main_panel.dock_right()
         gui.main_panel.set_width(304)
-
-        @self.play.on_click
-        async def _(_: viser.GuiEvent) -> None:
-            if not player.playing and player.time >= player.end:
-                player.jump(0.0)
-            player.playing = not player.playing
-
-        @self.line.on_update
-        async def _(_: viser.GuiEvent) -> None:
-            if self.line.value != self._set:
-                player.jump(float(self.line.value))
-
-        @self.speed.on_click
-        async def _(_: viser.GuiEvent) -> None:
-            player.speed = float(self.speed.value.split()[0])
 
     def _plots(self) -> None:
         gui, log = self.server.gui, self.player.log

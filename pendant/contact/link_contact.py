@@ -6,6 +6,7 @@ link is pushed with turns that link's joint and those before it, and none beyond
 Robotics 33(6), 2017, section V). A push is reported once as it begins and once as it has gone, whatever it does between.
 """
 
+from collections import deque
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from pendant.contact.confirmation import Confirmation
 from pendant.contact.contact_change import Change
 from pendant.contact.contact_rules import HEAVIEST
-from pendant.contact.history import History
+from pendant.contact.history import SIZE, History
 from pendant.contact.joint_torques import Torques
 from pendant.contact.settings import ContactUse
 from pendant.tick.pose import Vector
@@ -24,6 +25,8 @@ Array = NDArray[np.float64]
 
 LINKS = ("elbow", "forearm", "wrist")
 """The parts that are told apart: what the joints before the elbow feel, what the elbow feels, too, and what joints beyond do."""
+ELBOW = 2
+"""Source of `ContactSignals` that tells force and acceleration at the elbow; the next one those at the forearm's end."""
 NEWEST = 10
 """Ticks of the newest mean: the encoders' noise is less than a tenth of a bound in it."""
 FOLLOW = 0.0066
@@ -89,10 +92,16 @@ def _felt(new: Array, old: Array, signals: ContactSignals) -> tuple[Array, Array
     Friction at rest may hold as much as it can one way before, and the other way now.
     """
     n, (shares, misfit) = signals.joints, signals.known
-    change, held = new - old, new[-n:] + old[-n:]
-    causes = change[n:-n].reshape(misfit.shape)
+    felt, causes = _of_contact(new - old, shares)
     wrong = misfit * causes
-    return change[:n] - np.vecdot(shares, causes), np.sqrt(np.vecdot(wrong, wrong)) + held
+    return felt, np.sqrt(np.vecdot(wrong, wrong)) + (new[-n:] + old[-n:])
+
+
+def _of_contact(change: Array, shares: Array) -> tuple[Array, Array]:
+    """What each joint feels of a contact in a change of torques and causes (n,) [N·m], and the change of the causes (n, m)."""
+    n = len(shares)
+    causes = change[n:-n].reshape(shares.shape)
+    return change[:n] - np.vecdot(shares, causes), causes
 
 
 def _sizes(new: Array, old: Array, limit: Array, signals: ContactSignals) -> tuple[float, float]:
@@ -114,6 +123,7 @@ class LinkWatch:
         "_largest",
         "_left_out",
         "_rest",
+        "_unread",
         "points",
         "silent",
         "torques",
@@ -122,6 +132,7 @@ class LinkWatch:
 
     def __init__(self) -> None:
         self.points = (History(), History())  # force and acceleration at the elbow, and at the forearm's end
+        self._unread = deque[ContactSignals](maxlen=SIZE)  # that these have not got yet: they are seldom asked
         self.torques = Torques()  # that the joints feel, the causes of their errors, and what friction may hold of them
         self.touched: int | None = None  # which of `LINKS`
         self.silent = False  # after a release, until the torques have settled
@@ -140,19 +151,16 @@ class LinkWatch:
             if self.torques.count:
                 self.gap()
             return
-        elbow, forearm = signals.each(2, 4)
-        assert elbow is not None
-        assert forearm is not None
-        self._left_out = bool(elbow.saturated)
+        self._left_out = signals.saturated(ELBOW)
         if self._left_out:
             return
         self.torques.push(signals.felt)
-        self.points[0].push(elbow)
-        self.points[1].push(forearm)
+        self._unread.append(signals)
 
     def gap(self) -> None:
         """What was before counts no more, and nothing is known to be touched."""
         self.torques.gap()
+        self._unread.clear()
         for point in self.points:
             point.gap()
         self._rest = np.zeros(0)
@@ -189,6 +197,11 @@ class LinkWatch:
         Or it is one that ends, where less is felt than before: it began too gently to be seen.
         """
         elbow, n = signals.elbow, limit.size
+        felt, _ = _of_contact(new - self._rest, signals.known[0])
+        if float((np.abs(felt) / limit)[: elbow + 1].max()) < 1.0:  # so nobody asks how wrong it may be
+            self._count.step(0, use.slow_count, use.misses)
+            self._follow(new, signals)
+            return None
         felt, wrong = _felt(new, self._rest, signals)
         bound = limit + wrong
         largest = float((np.abs(felt) / bound)[: elbow + 1].max())
@@ -268,6 +281,11 @@ class LinkWatch:
 
     def _reported(self, change: Change, link: int, new: Array, old: Array) -> LinkChange:
         """What is reported: force and acceleration at the link, as the newest mean and the stored one tell them (CD-16)."""
+        for signals in self._unread:
+            for each, signal in zip(self.points, signals.each(ELBOW, ELBOW + len(self.points)), strict=True):
+                assert signal is not None
+                each.push(signal)
+        self._unread.clear()
         point, n = self.points[min(link, 1)], new.size
         oldest = min(BEFORE, self.torques.count - NEWEST)
         way = new - old

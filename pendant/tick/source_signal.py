@@ -35,6 +35,7 @@ class Signal(NamedTuple):
 
 
 WIDTH = len(Signal._fields)
+SATURATED = Signal._fields.index("saturated")
 
 
 class ContactSignals(msgspec.Struct, frozen=True, gc=False):
@@ -78,6 +79,10 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
         """The causes are a third of what is left without torques, friction and deviations."""
         n = self.joints
         return 2 * n + (self.numbers.size - self._begin - 3 * n) // 3
+
+    def saturated(self, source: int) -> bool:
+        """A source's force is at the end of its sensor's range."""
+        return bool(self.numbers[source * WIDTH + SATURATED])
 
     def each(self, first: int = 0, last: int | None = None) -> tuple[Signal | None, ...]:
         """The signal of each source from `first` to before `last`, None where it is not valid."""

@@ -154,7 +154,7 @@ def test_the_page_follows_the_player(replay: Replay) -> None:
     player = replay.player
     until(lambda: "Time" in replay.facts.shown, "the page shows the start")
     player.jump(0.95)
-    until(lambda: replay.line.value == 0.95, "the time line follows")
+    until(lambda: replay.time_line.line.value == 0.95, "the time line follows")
     until(lambda: Mode.FREE_DRIVE.replace("_", "-") in replay.light.shown, "the mode is shown")
     player.playing = True
     until(lambda: not player.playing, "it plays to its end")
@@ -164,10 +164,10 @@ def test_the_page_follows_the_player(replay: Replay) -> None:
 def test_events_are_marks_on_the_time_line_and_rows_that_lead_there(replay: Replay) -> None:
     player, (first, *_, last) = replay.player, replay.player.log.events
     for event in (first, last):
-        assert f'data-pd-pick="{escape(moment(event))}"' in replay.marks.shown
-        replay.marks.choice.value = moment(event)
+        assert f'data-pd-pick="{escape(moment(event))}"' in replay.time_line.marks.shown
+        replay.time_line.marks.choice.value = moment(event)
         until(lambda event=event: player.time == pytest.approx(event.t), "it is gone to")
-    assert f"left:{100.0 * last.t / player.end:.2f}%" in replay.marks.shown
+    assert f"left:{100.0 * last.t / player.end:.2f}%" in replay.time_line.marks.shown
 
 
 def test_a_plot_marks_the_time(replay: Replay) -> None:
