@@ -33,10 +33,12 @@ from app.commands.command_options import (
 from app.commands.export_command import EXAMPLES, export_
 from app.commands.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
 from app.commands.fit_command import FIT_EXAMPLES, fit_
+from app.commands.import_command import IMPORT_EXAMPLES, import_
 from app.commands.run_command import RUN_EXAMPLES, run_
 from app.commands.sweep_command import SWEEP_EXAMPLES, sweep_
 from app.ending import ending
-from app.files.library import load_arm, robots
+from app.files.bad_input import BadInput
+from app.files.library import load_arm, own_robots, robots
 from app.session.session_file import FIRST_START, Setup
 from sim.arm.arm_file import Arm
 
@@ -162,6 +164,7 @@ def robot_(
 app.command("run", epilog=RUN_EXAMPLES)(run_)
 app.command("sweep", epilog=SWEEP_EXAMPLES)(sweep_)
 app.command("fit", epilog=FIT_EXAMPLES)(fit_)
+app.command("import", epilog=IMPORT_EXAMPLES)(import_)
 app.command("schema", epilog=SCHEMA_EXAMPLES)(schema_)
 app.command("check", epilog=CHECK_EXAMPLES)(check_)
 
@@ -217,8 +220,12 @@ def robots_() -> None:
     table = Table("name", "title", "reach [m]", "payload [kg]", "mass [kg]", "joints", "source", box=None, pad_edge=False)
     for column in (2, 3, 4, 5):
         table.columns[column].justify = "right"
-    for name in robots():
-        arm = load_arm(name)
+    for name in [*robots(), *own_robots()]:
+        try:
+            arm = load_arm(name)
+        except BadInput as refusal:
+            Console(stderr=True, soft_wrap=True).print(escape(str(refusal)))
+            continue
         table.add_row(
             name, arm.title, f"{arm.reach:g}", f"{arm.payload:g}", f"{sum(arm.masses.mass):.1f}", str(arm.n), _source(arm)
         )

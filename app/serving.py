@@ -13,7 +13,7 @@ import msgspec
 
 from app.ending import ending
 from app.files.checked import BadInput
-from app.files.library import robots, shipped
+from app.files.library import own_robots, robots, shipped
 from app.kept_setup import Cell, Keeper, check_cell, keeper_for
 from app.log.live import LiveRecording
 from app.log.recording_plan import ALL, RecordingPlan
@@ -183,8 +183,8 @@ class ServedArms:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The shipped arms."""
-        return tuple(robots())
+        """The shipped arms, then the user's own."""
+        return (*robots(), *own_robots())
 
     def open(self, prepared: Prepared) -> RobotInterfaces | None:
         """Open the network interfaces, where they are wanted. Raises BadInput as `open_interfaces`."""

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files.library import ASSETS, load_arm, robots
+from app.files.library import ASSETS, FOOT, load_arm, robots
 from sim.arm.arm_file import Arm, Outline
 from sim.arm.frames import hulls, link_transform, placements, rotation, transform, z_turned_to
 
@@ -26,9 +26,6 @@ SECTIONS = 36
 
 SMOOTH = np.cos(np.radians(40.0))
 """Profile corners sharper than this are edges."""
-
-FOOT = "foot"
-"""Name of the fixed base's picture; the links have their joints' names, and the first joint is called base."""
 
 PAINT: dict[str, tuple[tuple[float, float, float], float, float]] = {
     # colour (linear), metallic, roughness
@@ -271,7 +268,7 @@ def shaped(arm: Arm, k: int) -> Picture:
         picture.lathe("body" if k < 0 or k % 2 == 0 else "tube", capsule(shape.radius, length), pose)
     if k >= 0:
         before = [shape for shape in hulls(arm) if shape.link == k - 1]
-        wide = max(shape.radius for shape in [*own, *before])
+        wide = max([shape.radius for shape in [*own, *before]], default=0.03)
         picture.lathe("lid", drum(1.02 * wide, -0.006, 0.006, 0.001, 0.001), np.eye(4))
     if k == arm.n - 1:
         face = placements(arm)[-1]

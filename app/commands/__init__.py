@@ -1,3 +1,3 @@
-"""Commands of the command line, the options that they share, and how a command ends. Uses files/, learning/, real_logs/, report/,
-robot_interface/, runs/, session/, studies/.
+"""Commands of the command line, the options that they share, and how a command ends. Uses arm_import/, files/, learning/,
+real_logs/, report/, robot_interface/, runs/, session/, studies/.
 """

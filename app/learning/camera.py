@@ -179,7 +179,7 @@ def _model(arm: Arm, scenario: Scenario, height: int, width: int) -> mujoco.MjMo
     spec.worldbody.add_light(pos=[1.5, -1.5, 3.0], dir=[-0.4, 0.4, -0.8], diffuse=[0.6] * 3, specular=[0.2] * 3)
     for name in ("foot", *arm.chain.joints):
         body = spec.worldbody.add_body(name=name, mocap=True)
-        for k, (vertices, faces, colour) in enumerate(_surfaces(arm.name, name)):
+        for k, (vertices, faces, colour) in enumerate(_surfaces(arm, name)):
             spec.add_mesh(name=f"{name}/{k}", uservert=vertices.ravel(), userface=faces.ravel())
             body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=f"{name}/{k}", rgba=colour)
     flange = spec.worldbody.add_body(name="flange", mocap=True)
@@ -211,10 +211,10 @@ def _add_floor(spec: mujoco.MjSpec, level: float) -> None:
     )
 
 
-def _surfaces(arm_name: str, part: str) -> Iterator[tuple[Array, NDArray[np.int32], list[float]]]:
+def _surfaces(arm: Arm, part: str) -> Iterator[tuple[Array, NDArray[np.int32], list[float]]]:
     """Vertices (v, 3) [m], faces (f, 3) and colour of each surface of a part; none, where nobody drew the part."""
     try:
-        drawn = trimesh.load_scene(mesh_path(arm_name, part))
+        drawn = trimesh.load_scene(mesh_path(arm, part))
     except BadInput:
         return
     for node in drawn.graph.nodes_geometry:

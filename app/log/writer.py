@@ -20,6 +20,7 @@ from pendant.decision import Decision
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event
 from pendant.guided.force_covariance import UncertainForce
+from sim.arm.arm_file import Arm
 from sim.arm.scenario import FreeCylinder, Plane, Scenario
 from sim.gripping.finger_drive import GripperState
 from sim.simulation import Simulation
@@ -194,7 +195,9 @@ class Writer:
         if thinned:
             file.note("rates", {topic: str(ticks) for topic, ticks in thinned.items()})
         file.note("words", {name: " ".join(words) for name, words in WORDS.items()})
-        file.attach("arm.json", "application/json", msgspec.json.encode(arm))
+        said = msgspec.to_builtins(arm)
+        del said["meshes"]  # a folder of this machine
+        file.attach("arm.json", "application/json", msgspec.json.encode(said))
         file.attach("scenario.json", "application/json", msgspec.json.encode(scenario))
         channels: dict[str, int] = {}
         packed = {"/state": ("pendant/msg/State", STATE, CODES), "/truth": ("pendant/msg/Truth", TRUTH, ())}
@@ -212,10 +215,10 @@ class Writer:
             schema = msgspec.json.encode({"title": name, "type": "object"}).decode()
             together = PICTURES if topic == "/pendant" else TOLD
             channels[topic] = file.channel(topic, name, schema, encoding="json", of_schema="jsonschema", together=together)
-        self._shapes_told: bytes | None = msgspec.json.encode(foxglove.update(self._shapes(arm.name, scenario)))
+        self._shapes_told: bytes | None = msgspec.json.encode(foxglove.update(self._shapes(arm, scenario)))
         return channels
 
-    def _shapes(self, arm: str, scenario: Scenario) -> list[foxglove.Json]:
+    def _shapes(self, arm: Arm, scenario: Scenario) -> list[foxglove.Json]:
         """What stands still in its own frame: links and world objects."""
         entities = []
         for part in self._names[:-1]:

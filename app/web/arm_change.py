@@ -1,8 +1,10 @@
 """What the page needs to go over to another arm without a new start of the server (app.serving.ServedArms)."""
 
+from contextlib import suppress
 from typing import NamedTuple, Protocol
 
-from app.files.library import mesh_path
+from app.files.bad_input import BadInput
+from app.files.library import FOOT, mesh_path
 from app.kept_setup import Cell, Keeper
 from app.robot_interface.interfaces import RobotInterfaces
 from app.session.prepare import Prepared
@@ -49,5 +51,13 @@ class ArmChange(Protocol):
 
 
 def meshes_of(arm: Arm) -> dict[str, bytes]:
-    """The pictures of an arm's links. Raises BadInput: there are none."""
-    return {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}
+    """The pictures of an arm's links; of one that nobody drew its outline or its shapes."""
+    found: dict[str, bytes] = {}
+    for part in (FOOT, *arm.chain.joints):
+        with suppress(BadInput):
+            found[part] = mesh_path(arm, part).read_bytes()
+    if len(found) <= arm.n:
+        from assets.build_meshes import pictures
+
+        found = {part: picture.glb() for part, picture in pictures(arm).items()} | found
+    return found

@@ -281,6 +281,7 @@ class Arm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     sensors: SensorNumbers
     accuracy: Accuracy = ASSUMED_ACCURACY
     outline: Outline | None = None  # None: pictures show the shapes
+    meshes: Text = ""  # folder of the links' pictures, beside the file; "": those that come with an arm of this name, or none
     shapes: Annotated[list[Capsule], Meta(max_length=60)]
 
     @property

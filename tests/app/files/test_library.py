@@ -115,13 +115,13 @@ def test_a_bad_arm_is_one_line(tmp_path: Path, old: str, new: str, line: str) ->
 
 
 def test_a_mesh_is_found_by_arm_and_link() -> None:
-    assert mesh_path("ur5e", "foot").read_bytes()[:4] == b"glTF"
-    assert mesh_path("ur5e", "wrist_3") != mesh_path("ur5e", "base")
+    assert mesh_path(load_arm("ur5e"), "foot").read_bytes()[:4] == b"glTF"
+    assert mesh_path(load_arm("ur5e"), "wrist_3") != mesh_path(load_arm("ur5e"), "base")
 
 
 def test_a_missing_mesh_lists_those_there_are() -> None:
     with pytest.raises(BadInput, match="ur5e/wrist_3"):
-        mesh_path("ur5e", "wrist_4")
+        mesh_path(load_arm("ur5e"), "wrist_4")
 
 
 def test_the_library_does_not_wait_for_trimesh() -> None:

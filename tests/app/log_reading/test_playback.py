@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.files.checked import BadInput, convert
-from app.files.library import mesh_path
+from app.files.library import load_arm, mesh_path
 from app.log.recorded_messages import PendantMessage
 from app.log.recorder import Recorder
 from app.log_reading.playback import Player, snapshot_at, user_at
@@ -145,7 +145,7 @@ def test_a_log_without_a_tick_is_refused(played: tuple[Log, dict[int, Snapshot]]
 @pytest.fixture
 def replay(player: Player) -> Iterator[Replay]:
     parts = ("foot", *player.log.arm.chain.joints)
-    shown = Replay(player, {part: mesh_path("ur5e", part).read_bytes() for part in parts}, HERE, 0)
+    shown = Replay(player, {part: mesh_path(load_arm("ur5e"), part).read_bytes() for part in parts}, HERE, 0)
     yield shown
     shown.close()
 
