@@ -66,7 +66,7 @@ def against_(
     for caption, head, rows in tables(found):
         console.print(f"\n{escape(caption)}")
         if rows:
-            table = Table(*head, box=None, pad_edge=False)
+            table = Table(*head, box=None, pad_edge=False, collapse_padding=True)
             for row in rows:
                 table.add_row(*map(escape, row))
             console.print(table)

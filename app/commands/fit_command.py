@@ -78,6 +78,8 @@ def _loads(said: list[str], names: list[str]) -> dict[str, float | None]:
 
 
 def _show(console: Console, fitted: "Fitted", *, loaded: bool) -> None:
+    from app.real_logs.fitting import LEAST_MOTION
+
     found, at = fitted.found, fitted.found.places
     x, d, arm = found.x, found.deviation, found.model.arm
     joints = arm.chain.joints
@@ -95,6 +97,9 @@ def _show(console: Console, fitted: "Fitted", *, loaded: bool) -> None:
         centre = ", ".join(f"{each / mass:.3f}" for each in first) if mass > 0 else ""
         console.print(escape(f"Load: {mass:.3f} ± {d[at.load][0]:.3f} kg, centre {centre} m from the flange"))
     for run in fitted.judged:
+        if np.isnan(run.measured).all():
+            console.print(escape(f"Left out of the fit: {run.name}, in which no joint moves for {LEAST_MOTION:g} s: not judged"))
+            continue
         console.print(escape(f"Left out of the fit: {run.name}, RMS of joint torque [N·m]"))
         table = Table("", *joints, box=None, pad_edge=False)
         rows = {"measured": run.measured, "left by the file": run.before, "left by the fit": run.after, OF_ITSELF: run.best}

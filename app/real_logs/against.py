@@ -102,7 +102,8 @@ def hold_against(log: JointLog, prepared: Prepared, advance: Progress) -> Agains
         if block.run_in:
             drift.begin()
         apart = drift.add(out.left, out.driven, out.speed, holds=controller.breakaway)
-        found.rows.append(_rows(t, q, out, fixed)[chosen])
+        # Taken before they are put together: a part of a block would keep all of it, half a gigabyte of an hour.
+        found.rows.append(_rows(t[chosen], q[chosen], Estimates(*(each[chosen] for each in out)), fixed[chosen]))
         found.drifts.append(drift.angles(q[chosen], apart[chosen]))
         squares += (out.felt**2).sum(axis=0)
         found.largest = np.maximum(found.largest, np.abs(out.felt).max(axis=0))

@@ -27,6 +27,8 @@ def folder(tmp_path_factory):
     log_of(arm, folder / "bare.csv")
     log_of(arm, folder / "loaded.csv", loaded=True)
     log_of(arm, folder / "other.csv")
+    lines = (folder / "other.csv").read_text().splitlines()
+    (folder / "brief.csv").write_text("\n".join(lines[: len(lines) // 6]))
     log_of(arm, folder / "half.csv", still=[0, 1, 4])
     log_of(arm, folder / "still.csv", still=range(6))
     return folder
@@ -44,9 +46,16 @@ def said(*options):
 def test_the_command_writes_an_arm_that_can_be_used(folder):
     out = folder / "My arm.yaml"
     logs = [str(folder / name) for name in ("bare.csv", "loaded.csv")]
-    result = said(*logs, "--load", "loaded.csv=?", "--out", str(out))
+    judges = [word for name in ("other.csv", "brief.csv") for word in ("--judge", str(folder / name))]
+    result = said(*logs, "--load", "loaded.csv=?", "--out", str(out), *judges)
     assert result.exit_code == 0, result.output
-    for words in ("Load:", "end of bare.csv", "left by the fit", "torque constants stand on the filed masses"):
+    for words in (
+        "Load:",
+        "other.csv, RMS",
+        "left by the fit",
+        "brief.csv, in which no joint moves for 10 s: not judged",
+        "torque constants stand on the filed masses",
+    ):
         assert words in result.output
     made = load_arm(str(out))
     assert made.name == "my-arm"

@@ -139,6 +139,18 @@ def test_a_gap_ends_what_is_known_and_is_no_contact() -> None:
     assert watch.points[0].count == 0
 
 
+def test_what_is_told_of_a_contact_holds_all_ticks_since_a_gap_and_none_before() -> None:
+    watch, counts = LinkWatch(), []
+    for k, row in enumerate(stream(400, UPPER, (300, 400, 30.0))):
+        if k == 200:
+            watch.gap()
+        watch.sense(tick(row))
+        if watch.step(USE, tick(row), 1.0) is not None:
+            counts.append((watch.points[0].count, watch.points[1].count, k - 199))
+    assert len(counts) == 1
+    assert len(set(counts[0])) == 1
+
+
 def test_ticks_with_the_sensor_at_the_end_of_its_range_are_left_out() -> None:
     """A hand comes so suddenly that the swinging load saturates the sensor for 5 ticks; the contact is found all the same."""
     torques, watch = stream(300, UPPER, (START, 300, 30.0)), LinkWatch()
