@@ -75,4 +75,4 @@ class Keys:
 
     def _pause(self) -> None:
         self._loop.paused = not self._loop.paused
-        self._docks.lab.clock.value = "Pause" if self._loop.paused else "Run"
+        self._docks.lab.clock.value = "Freeze" if self._loop.paused else "Go on"

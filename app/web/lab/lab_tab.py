@@ -50,7 +50,7 @@ class Lab:
         self._shown: object = None
         self._number = 0  # of the last change of tool or payload
         self.scenarios = Scenarios(gui, loop, arm)
-        self.clock = gui.add_button_group("Clock", ("Run", "Pause", "Step"))
+        self.clock = gui.add_button_group("Clock", ("Go on", "Freeze", "Step"))
         self.speed = gui.add_slider("Speed", min=0.1, max=1.0, step=0.1, initial_value=1.0)
         self.restart = gui.add_button("Start over", color="gray")
         self.rates = Html(gui)
@@ -143,7 +143,7 @@ class Lab:
                 self._loop.paused = True
                 self._loop.step_once()
             else:
-                self._loop.paused = self.clock.value == "Pause"
+                self._loop.paused = self.clock.value == "Freeze"
 
         @self.speed.on_update
         async def _(_: viser.GuiEvent) -> None:

@@ -62,7 +62,7 @@ PROGRAM_PAUSED = PanelText("The program is paused", "Run goes on with it, Stop e
 MOVING = PanelText("The arm moves", "Keep out of its way until it stands.", Colour.GREEN)
 MEASURING = PanelText("The arm measures its payload", "It turns its wrist by itself: hands off. Stop ends it.", Colour.BLUE)
 CLOCK_PAUSED = PanelText(
-    "The simulation is paused", "Nothing moves. Run, on the tab Lab, or the key P lets it go on.", Colour.AMBER
+    "The simulation is paused", "Nothing moves. Go on, on the tab Lab, or the key P lets it run again.", Colour.AMBER
 )
 
 

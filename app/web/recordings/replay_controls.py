@@ -97,6 +97,7 @@ class ReplayControls:
                 self.line.value = at
         if self.play.label != label:
             self.play.label = label
+            self.play.icon = viser.Icon.PLAYER_PAUSE if label == "Pause" else viser.Icon.PLAYER_PLAY
         changed += [self.ghost.show(posture, snapshot), self.said.show(self._words())]
         return any(changed)
 

@@ -122,5 +122,6 @@ def setting_change(event: Event) -> str:
         what = f"Joint {own[1:]}" if section == "joints" else f"{'Turning about' if own[0] == 'r' else 'Moving along'} {own[-1]}"
         text = f"{what}: {'free' if value else 'locked'}"
     else:
-        text = f"{SAFETY.get(row.name) or f'{title_of(section)}, {name_of(row).lower()}'}: {told(value, row.unit)}"
+        own = "" if own == "on" else f", {name_of(row).lower()}"  # the switch of a section is that section
+        text = f"{SAFETY.get(row.name) or title_of(section) + own}: {told(value, row.unit)}"
     return f"{text} refused" if refused else text

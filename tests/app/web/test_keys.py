@@ -81,11 +81,11 @@ def test_the_clock_is_paused_stepped_and_let_go_on(
     monkeypatch.setattr(keys, "AGAIN", 0.0)
     client = join()
     press(served, client, "P")
-    until(lambda: loop.paused and served.lab.clock.value == "Pause", "paused")
+    until(lambda: loop.paused and served.lab.clock.value == "Freeze", "paused")
     press(served, client, "N")
     until(lambda: loop.steps == 1, "a step")
     press(served, client, "P")
-    until(lambda: not loop.paused and served.lab.clock.value == "Run", "it goes on")
+    until(lambda: not loop.paused and served.lab.clock.value == "Go on", "it goes on")
 
 
 def test_a_key_held_down_counts_once(served: Served, join: Join, loop: FakeLoop) -> None:

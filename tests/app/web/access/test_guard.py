@@ -226,7 +226,7 @@ def test_a_watcher_changes_nothing(served: Served, join: Join, loop: FakeLoop) -
     panel = served.panel
     watcher.set(served.lab.force._impl.uuid, value=90.0)
     watcher.set(panel.mode._impl.uuid, value="NORMAL")
-    watcher.set(served.lab.clock._impl.uuid, value="Pause")
+    watcher.set(served.lab.clock._impl.uuid, value="Freeze")
     watcher.set(served.lab.speed._impl.uuid, value=0.5)
     watcher.set(served.lab.restart._impl.uuid, value=True)
     watcher.set(panel.free_drive._impl.uuid, value=True)

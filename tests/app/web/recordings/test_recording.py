@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import viser
 
 from app.log.events_file import line_of
 from app.log_reading.reader import read
@@ -132,6 +133,7 @@ def test_a_recording_is_replayed_beside_the_running_arm(served: Served, join: Jo
     client.set(replay.speed._impl.uuid, value="0.1 ×")
     client.set(replay.play._impl.uuid, value=True)
     until(lambda: replay.play.label == "Pause" and 0.2 < replay.line.value < 0.6, "slowly on")
+    until(lambda: replay.play.icon == viser.Icon.PLAYER_PAUSE, "its sign")
     player = replay._shelf.player
     assert player is not None
     assert not replay.marks.choice.visible  # nothing has happened

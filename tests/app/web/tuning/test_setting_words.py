@@ -14,7 +14,7 @@ from pendant.events.event import Event, Kind
         ("joints.j12", False, "Joint 12: locked"),
         ("axes.x", False, "Moving along x: locked"),
         ("axes.rz", True, "Turning about z: free"),
-        ("joints.on", False, "Locked joints, on: off"),
+        ("joints.on", False, "Locked joints: off"),
         ("free_drive.period", 8.0, "Free-drive, no motion: 8 s"),
         ("limits.activation.flange_speed.max", 0.03, "Limits of the check, flange speed: 0.03 m/s"),
     ],
