@@ -13,7 +13,7 @@ import msgspec
 
 from app.ending import ending
 from app.files.checked import BadInput
-from app.files.library import own_robots, robots, shipped
+from app.files.library import own_robots, robots
 from app.kept_setup import Cell, Keeper, check_cell, keeper_for
 from app.log.live import LiveRecording
 from app.log.recording_plan import ALL, RecordingPlan
@@ -137,8 +137,8 @@ def log_shown_until_interrupted(found: Against, prepared: Prepared, *, usual: in
     """
     simulation = simulate(prepared)
     simulation.tick(Wishes(NOTHING, (), ()))
-    meshes = meshes_of(found.arm) if shipped(found.arm.name, "robots") else {}
-    page = partial(LogReplay, found, replace(simulation.snapshot(), scenario=prepared.scenario), meshes=meshes)
+    snapshot = replace(simulation.snapshot(), scenario=prepared.scenario)
+    page = partial(LogReplay, found, snapshot, meshes=meshes_of(found.arm))
 
     def at(access: Access, port: int) -> LogReplay:
         return page(access=access, port=port)

@@ -104,7 +104,7 @@ def _prune(body: Element, moving: set[str], *, shapes_weigh: bool) -> None:
 
 
 def _normalise(element: Element) -> None:
-    """Quaternions of length 1: MuJoCo normalises them all, Pinocchio takes those of sites as they stand."""
+    """Quaternions of length 1, as MuJoCo takes them."""
     said = element.get("quat")
     if said is not None:
         numbers = [float(word) for word in said.split()]
