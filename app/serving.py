@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
@@ -20,7 +20,6 @@ from app.log.recording_plan import ALL, RecordingPlan
 from app.log_reading.playback import Player
 from app.log_reading.reader import files_of, read
 from app.mcap_file.mending import repair
-from app.real_logs.against import Against
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.interfaces import JOINTS, RobotInterfaces
@@ -33,7 +32,6 @@ from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.listening import Access, access_through, free_port
 from app.web.access.site import Site
 from app.web.arm_change import BroughtArm, ReadyArm, meshes_of
-from app.web.log_replay import LogReplay
 from app.web.replay import Replay
 from app.web.server import Served
 from app.web.server import serve as serve_web
@@ -42,6 +40,9 @@ from sim.arm.arm_file import Arm
 from sim.exchange.desk import Wishes
 from sim.run.loop import Loop
 from sim.run.troubles import reason_of
+
+if TYPE_CHECKING:
+    from app.real_logs.against import Against
 
 
 class Serving(NamedTuple):
@@ -124,7 +125,7 @@ def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: 
 
 
 @contextmanager
-def log_shown_until_interrupted(found: Against, prepared: Prepared, *, usual: int) -> Iterator[Site]:
+def log_shown_until_interrupted(found: "Against", prepared: Prepared, *, usual: int) -> Iterator[Site]:
     """Show what became of a log that was held against the controller, on this machine alone.
 
     Args:
@@ -135,6 +136,8 @@ def log_shown_until_interrupted(found: Against, prepared: Prepared, *, usual: in
     Raises:
         BadInput: no model can be built of it, or no port is free.
     """
+    from app.web.log_replay import LogReplay  # draws with matplotlib, which is of the extra [logs]
+
     simulation = simulate(prepared)
     simulation.tick(Wishes(NOTHING, (), ()))
     snapshot = replace(simulation.snapshot(), scenario=prepared.scenario)
