@@ -37,7 +37,7 @@ def site(found):
     prepared = prepare(Setup(robot="ur10e", mismatch="nominal", payload_true=LOAD, payload_configured=LOAD), "test")
     simulation = Simulation(prepared.arm, prepared.scenario, prepared.settings)
     simulation.tick(Wishes(NOTHING, (), ()))
-    meshes = {part: mesh_path("ur10e", part).read_bytes() for part in ("foot", *ARM.chain.joints)}
+    meshes = {part: mesh_path(ARM, part).read_bytes() for part in ("foot", *ARM.chain.joints)}
     first = replace(simulation.snapshot(), scenario=prepared.scenario)
     shown = LogReplay(found, first, meshes=meshes, access=HERE, port=0)
     shown.stop_drawing()
