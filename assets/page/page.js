@@ -95,7 +95,7 @@
       lost.classList.toggle("pd-on", Boolean(told || again)); lost.classList.toggle("pd-back", !told && Boolean(again)); }
     if (beat && at(".pd-picture") && at("#pd-opening") || performance.now() - began > OPENING) open(); };
   const open = () => { const shown = at("#pd-opening"); if (!shown) return; shown.classList.add("pd-gone"); setTimeout(() => shown.remove(), 300); restore();
-    const place = at(".pd-picture"); if (place && !at("#pd-tour")) { const card = made("section", "pd-tour", "region"); card.setAttribute("aria-label", "Tour"); place.append(card); tour(); } };
+    const place = at(".pd-picture"); if (place && stop() && !at("#pd-tour")) { const card = made("section", "pd-tour", "region"); card.setAttribute("aria-label", "Tour"); place.append(card); tour(); } };
 
   // What a reload keeps: dark or light, the tabs that were chosen, the width of the left side.
   const strips = () => all("[role=tablist]").filter((list) => list.getBoundingClientRect().left < innerWidth / 2);
