@@ -1,8 +1,8 @@
 """What descriptions of arms do not hold, estimated: from each joint's rated torque and the kind of drive.
 
 The rules are lines through what is known of drives, in proportion to a power of the rated torque T [N·m].
-`HARMONIC` goes through the two joint sizes of ur5e.yaml (150 and 28 N·m), which says what of it was measured; `SERVO` through one
-geared servo of 3 N·m.
+`HARMONIC` goes through the two joint sizes of assets/robots/ur5e.yaml (150 and 28 N·m), which says what of it was measured;
+`SERVO` through one geared servo of 3 N·m.
 """
 
 from collections.abc import Sequence
@@ -33,13 +33,13 @@ LOADED = 2.0 / 3.0
 """Share of the rated torque that own weight and payload together take at most in any posture; of shipped arms 0.6 to 0.7."""
 
 CURRENT_RESERVE = 1.3
-"""Largest current over that of the rated torque, so that friction is overcome at full load: as in ur5e.yaml."""
+"""Largest current over that of the rated torque, so that friction is overcome at full load: as in assets/robots/ur5e.yaml."""
 
 STIFFENED = 0.15
-"""By how much the secant stiffness at rated torque is above that at rest: as in ur5e.yaml."""
+"""By how much the secant stiffness at rated torque is above that at rest: as in assets/robots/ur5e.yaml."""
 
 SPEEDS = [0.01, 0.5, 1.5, 3.2]
-"""Where the friction curve has its points [rad/s]: as in ur5e.yaml."""
+"""Where the friction curve has its points [rad/s]: as in assets/robots/ur5e.yaml."""
 
 
 class PowerLaw(NamedTuple):

@@ -75,7 +75,7 @@ def tidy(client: Client, mass: float) -> None:
     take = client.called("Take")
     if client.things[take].get("visible", True):
         client.set(take, True)
-    client.set(client.called("Clock"), "Run")
+    client.set(client.called("Clock"), "Go on")
     client.set(client.called("Run"), "Stop")
     client.set(client.offering(SCENARIO), SCENARIO)
     client.look(0.5)

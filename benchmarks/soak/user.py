@@ -90,7 +90,7 @@ class User:
     def _pause(self) -> None:
         """Stop the clock for a moment."""
         clock = self._client.called("Clock")
-        for value in ("Pause", "Step", "Run"):
+        for value in ("Freeze", "Step", "Go on"):
             self._client.set(clock, value)
             self._client.look(0.3)
 
