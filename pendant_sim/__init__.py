@@ -70,6 +70,12 @@ ELSEWHERE = {
 """Module of each name that is not in app.api."""
 
 
+def defined(name: str) -> tuple[str, str]:
+    """Module in which a name of `__all__` is defined, and its name there."""
+    its_name = "ServedRobot" if name == "Robot" else name
+    return ELSEWHERE.get(its_name, "app.api"), its_name
+
+
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
@@ -78,5 +84,5 @@ def __getattr__(name: str) -> Any:
     trouble = hidden()
     if trouble is not None:
         raise ImportError(trouble)
-    its_name = "ServedRobot" if name == "Robot" else name
-    return getattr(import_module(ELSEWHERE.get(its_name, "app.api")), its_name)
+    module, its_name = defined(name)
+    return getattr(import_module(module), its_name)

@@ -50,8 +50,7 @@ def python_page() -> str:
     """The Python interface: each name of `pendant_sim`, from its docstring."""
     parts = ["# Python\n\nAll of it is imported from `pendant_sim`.\n"]
     for name in pendant_sim.__all__:
-        its_name = "ServedRobot" if name == "Robot" else name
-        module = pendant_sim.ELSEWHERE.get(its_name, "app.api")
+        module, its_name = pendant_sim.defined(name)
         parts.append(f"::: {module}.{its_name}\n    options:\n      heading: pendant_sim.{name}\n      toc_label: {name}\n")
     return "\n".join(parts)
 

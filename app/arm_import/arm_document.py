@@ -15,8 +15,8 @@ from app.arm_import.hull_capsules import Rod
 from app.arm_import.ratings import POSTURES, Ratings, elbow_of, ratings, reach_of, weights
 from app.arm_import.size_rules import DRIVES, Drive, drive_of, estimates
 from sim.arm.arm_file import Arm, ArmLimits, Capsule, ChainParameters, Inertias, LinkOrigin, Masses, Sourced
-from sim.arm.chain import Body, chain
-from sim.arm.frames import joint_frames, matrix_from_quaternion, quaternion_from_matrix
+from sim.arm.chain import chain
+from sim.arm.frames import inertia_numbers, joint_frames, matrix_from_quaternion, quaternion_from_matrix
 
 Array = NDArray[np.float64]
 
@@ -104,7 +104,7 @@ def completed(source: SourceArm, name: str, where: str, *, drive: Drive | None, 
 
 
 def _known(given: Mapping[str, object], n: int) -> tuple[float | None, list[float] | None]:
-    """Payload [kg] and rated torques [N·m] of measured values; None: none, or wrong ones, of which is told later."""
+    """Payload [kg] and rated torques [N·m] of measured values; None: not given, or not valid (refused later)."""
     payload, limits = given.get("payload"), given.get("limits")
     torques = limits.get("torque") if isinstance(limits, dict) else None
     known = float(payload) if isinstance(payload, int | float) and 0.0 < payload < 1000.0 else None
@@ -146,7 +146,7 @@ def _arm(source: SourceArm, name: str, where: str, *, ends: list[tuple[float, fl
             mass=[link.mass for link in source.links],
             com=[link.com.tolist() for link in source.links],
         ),
-        inertias=Inertias(status="official", source=text, tensor=[_tensor(link) for link in source.links]),
+        inertias=Inertias(status="official", source=text, tensor=[inertia_numbers(link.inertia) for link in source.links]),
         limits=ArmLimits(
             status="official",
             source=text,
@@ -164,11 +164,6 @@ def _origin(pose: Array, axis: Array | None) -> LinkOrigin:
     quaternion = quaternion_from_matrix(pose[:3, :3]).tolist()
     turns = None if quaternion == [1.0, 0.0, 0.0, 0.0] else quaternion
     return LinkOrigin(xyz=pose[:3, 3].tolist(), quaternion=turns, axis=None if axis is None else axis.tolist())
-
-
-def _tensor(link: Body) -> list[float]:
-    I = link.inertia  # noqa: E741 - the field's letter
-    return [float(each) for each in (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])]
 
 
 def with_shapes(arm: Arm, rods: Mapping[int, list[Rod]]) -> Arm:

@@ -34,7 +34,7 @@ from app.files.checked import load
 from app.files.library import FOOT, MESHES, shipped
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
-from sim.arm.frames import file_axes, transform
+from sim.arm.frames import file_axes, inertia_numbers, transform
 from sim.arm.scenario import ToolModel
 from sim.arm_problems import problems
 
@@ -185,14 +185,12 @@ def _tool(name: str, source: SourceArm, shapes: list[LinkShape]) -> ToolModel | 
     corners = np.vstack([mesh.vertices for mesh in meshes]) if meshes else np.zeros((1, 3))
     length = float(np.clip(corners[:, 2].max(), 0.0, 1.0))
     radius = float(np.clip(np.abs(corners[:, :2]).max(axis=0).min(), 0.01, 0.3))
-    I = body.inertia  # noqa: E741 - the field's letter
-    tensor = [float(each) for each in (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])]
     rounded = round(length, 4)
     return ToolModel(
         name=name,
         mass=body.mass,
         com=body.com.tolist(),
-        inertia=tensor,
+        inertia=inertia_numbers(body.inertia),
         tcp=[0.0, 0.0, rounded],
         length=rounded,
         radius=round(radius, 4),

@@ -27,7 +27,7 @@ from app.web.widgets.html import Html
 from app.web.widgets.svg import Colour
 from pendant.events.event_row import Severity
 from pendant.tick.modes import TICK_RATE
-from sim.arm.frames import joint_frames, matrix_from_quaternion, quaternion_from_matrix
+from sim.arm.frames import joint_frames, matrix_from_quaternion, quaternion_from_matrix, transform
 from sim.exchange.snapshot import Snapshot
 from sim.identification.model_drift import HORIZON
 from sim.run.troubles import Troubles
@@ -232,9 +232,7 @@ def _event(told: LogNotice) -> EventLine:
 
 def _matrix(pose: Array) -> Array:
     """A pose (7,) as a matrix (4, 4)."""
-    out = np.eye(4)
-    out[:3, :3], out[:3, 3] = matrix_from_quaternion(pose[3:]), pose[:3]
-    return out
+    return transform(matrix_from_quaternion(pose[3:]), pose[:3])
 
 
 def _pose(matrix: Array) -> Array:

@@ -175,6 +175,11 @@ def inertia_matrix(tensor: ArrayLike) -> Array:
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
+def inertia_numbers(matrix: Array) -> list[float]:
+    """ixx iyy izz ixy ixz iyz of a symmetric matrix (3, 3), as `inertia_matrix` takes them."""
+    return matrix[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)].tolist()
+
+
 def skew(vector: ArrayLike) -> Array:
     """Matrix (3, 3) S with S @ u = vector x u."""
     x, y, z = np.asarray(vector, dtype=float)

@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm.arm_file import Accuracy, Arm
-from sim.arm.frames import file_axes, link_frame
+from sim.arm.frames import file_axes, inertia_numbers, link_frame
 from sim.identification.arm_fit import ArmFit, told
 from sim.identification.body_parameters import body_of
 
@@ -32,8 +32,7 @@ def fitted_arm(found: ArmFit, name: str, source: str, *, weighed: bool) -> Arm:
         mass.append(round(body.mass, 4))
         centres.append(_rounded((np.linalg.inv(link_frame(arm, k)) @ [*body.com, 1.0])[:3], 5))
         axes = file_axes(arm, k)
-        I = axes.T @ body.inertia @ axes  # noqa: E741
-        tensors.append(_rounded([I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]], 6))
+        tensors.append(_rounded(inertia_numbers(axes.T @ body.inertia @ axes), 6))
     curves = np.maximum(x[at.friction].reshape(arm.n, at.m), LEAST_TORQUE)
     slowest = curves[:, 0] / np.array(arm.frictions.torque)[:, 0]
     constant = np.array(arm.motors.torque_constant) * (1.0 + x[at.constant])

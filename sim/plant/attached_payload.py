@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm.chain import load_body
-from sim.arm.frames import quaternion_from_matrix
+from sim.arm.frames import inertia_numbers, quaternion_from_matrix
 from sim.arm.scenario import AnyObject, Load
 from sim.plant.objects import set_contact_stiffness
 
@@ -64,9 +64,7 @@ class Payload:
         self.load = self._own
         if self._gripped is not None:
             body += load_body(self._gripped)
-            I = body.inertia  # noqa: E741
-            six = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
-            self.load = Load(mass=body.mass, com=body.com.tolist(), inertia=[float(moment) for moment in six])
+            self.load = Load(mass=body.mass, com=body.com.tolist(), inertia=inertia_numbers(body.inertia))
         values, axes = np.linalg.eigh(body.inertia)
         if np.linalg.det(axes) < 0:
             axes[:, 0] *= -1.0

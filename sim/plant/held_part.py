@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.arm.frames import quaternion_from_matrix
+from sim.arm.frames import inertia_numbers, quaternion_from_matrix
 from sim.arm.scenario import AnyObject, AnyPart, Load
 from sim.compiled.kernel import kernel
 from sim.gripping.grip_strength import HeldBody
@@ -84,8 +84,7 @@ class HeldParts:
         own = np.empty(9)
         mujoco.mju_quat2Mat(own, model.body_iquat[body])
         axes = turn @ own.reshape(3, 3)
-        I = axes @ np.diag(model.body_inertia[body]) @ axes.T  # noqa: E741
-        six = [float(moment) for moment in (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])]
+        six = inertia_numbers(axes @ np.diag(model.body_inertia[body]) @ axes.T)
         x, y, z = com.tolist()
         joint = model.joint(f"free/{part.name}").id
         self._at, self._dof = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])

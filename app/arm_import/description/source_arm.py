@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from app.arm_import.description.link_tree import ArmChain, parsed_spec
+from app.arm_import.description.link_tree import ArmChain, TreeJoint, parsed_spec
 from app.arm_import.description.plain_description import ROOT, plain_text, urdf_range
 from app.arm_import.description.robot_xml import Description
 from app.files.bad_input import ABSENT, BadInput
@@ -93,7 +93,8 @@ def source_arm(arm: Description, chain: ArmChain, reading: MujocoReading) -> Sou
     """
     model, data, where = reading.model, reading.data, arm.files.file.name
     reading.look(np.zeros(len(chain.joints)))
-    joints = [_joint(arm, chain, k, model) for k in range(len(chain.joints))]
+    spec = parsed_spec(arm) if arm.kind == "MJCF" else None
+    joints = [_joint(joint, model, spec) for joint in chain.joints]
     for joint in joints:
         low, high = joint.ends or (-1.0, 1.0)
         if not -FARTHEST_END <= low < high <= FARTHEST_END:
@@ -113,7 +114,7 @@ def source_arm(arm: Description, chain: ArmChain, reading: MujocoReading) -> Sou
         if link.mass < 1e-3 or not np.linalg.eigvalsh(link.inertia).min() > 0.0:
             raise BadInput(where, f"link of {joint.name}", f"{link.mass:g} kg", "expected a mass and an inertia of what it moves")
     name = arm.root.get("name" if arm.kind == "URDF" else "model") or arm.files.file.stem
-    return SourceArm(name, joints, placements, links, tool, _home(arm, chain), places)
+    return SourceArm(name, joints, placements, links, tool, None if spec is None else _home(arm, chain, spec), places)
 
 
 def _check_lengths(placements: Array, names: list[str], where: str) -> None:
@@ -159,16 +160,16 @@ def _bodies(
     return links, tool, places
 
 
-def _joint(arm: Description, chain: ArmChain, k: int, model: mujoco.MjModel) -> SourceJoint:
-    own = model.joint(chain.joints[k].name)
-    axis, element = np.array(own.axis), chain.joints[k].element
-    if arm.kind == "URDF":
+def _joint(of_chain: TreeJoint, model: mujoco.MjModel, spec: mujoco.MjSpec | None) -> SourceJoint:
+    """A joint of the chain; `spec` of MJCF, None for URDF."""
+    own = model.joint(of_chain.name)
+    axis, element = np.array(own.axis), of_chain.element
+    if spec is None:
         limit = element.find("limit")
         said = {} if limit is None else limit.attrib
         torque, speed = (_positive(said.get(key)) for key in ("effort", "velocity"))
-        return SourceJoint(chain.joints[k].name, axis, urdf_range(element), speed, torque, None)
-    spec = parsed_spec(arm)
-    joint = spec.joint(chain.joints[k].name)
+        return SourceJoint(of_chain.name, axis, urdf_range(element), speed, torque, None)
+    joint = spec.joint(of_chain.name)
     ends = (float(own.range[0]), float(own.range[1])) if model.jnt_limited[own.id] else None
     rotor = _positive(joint.armature)
     return SourceJoint(joint.name, axis, ends, None, _mjcf_torque(spec, joint), rotor)
@@ -199,22 +200,22 @@ def _is_motor(actuator: mujoco.MjsActuator) -> bool:
     return actuator.gaintype == mujoco.mjtGain.mjGAIN_FIXED and actuator.biastype == mujoco.mjtBias.mjBIAS_NONE
 
 
-def _home(arm: Description, chain: ArmChain) -> Array | None:
+def _home(arm: Description, chain: ArmChain, spec: mujoco.MjSpec) -> Array | None:
     """The joint angles of a keyframe: of that called home, else of the first that has the arm in it."""
     keys = [key for section in arm.root.findall("keyframe") for key in section.findall("key") if key.get("qpos")]
     keys.sort(key=lambda key: key.get("name") != "home")
-    where = _qpos_places(arm)
-    if not keys or where is None:
+    if not keys:
         return None
+    where = _qpos_places(arm, spec)
     values = [float(word) for word in keys[0].get("qpos", "").split()]
     places = [where.get(joint.name, len(values)) for joint in chain.joints]
     return np.array([values[place] for place in places]) if max(places) < len(values) else None
 
 
-def _qpos_places(arm: Description) -> dict[str, int] | None:
+def _qpos_places(arm: Description, spec: mujoco.MjSpec) -> dict[str, int]:
     """Where each joint of MJCF has its first number in qpos: joints in the order of their bodies."""
     sizes = {"FREE": 7, "BALL": 4}
-    types = {joint.name: str(joint.type).rpartition("mjJNT_")[2] for joint in parsed_spec(arm).joints}
+    types = {joint.name: str(joint.type).rpartition("mjJNT_")[2] for joint in spec.joints}
     found: dict[str, int] = {}
     place = 0
 

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from sim.arm.frames import (
     cross,
     inertia_matrix,
+    inertia_numbers,
     matrix_from_quaternion,
     quaternion_from_matrix,
     rotation,
@@ -67,6 +68,7 @@ def test_half_turns_have_a_quaternion(axis: int) -> None:
 
 def test_six_numbers_make_a_tensor() -> None:
     np.testing.assert_array_equal(inertia_matrix([1, 2, 3, 4, 5, 6]), [[1, 4, 5], [4, 2, 6], [5, 6, 3]])
+    assert inertia_numbers(inertia_matrix([1, 2, 3, 4, 5, 6])) == [1, 2, 3, 4, 5, 6]
 
 
 def test_a_skew_matrix_is_the_cross_product() -> None:
