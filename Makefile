@@ -11,7 +11,7 @@
 #                    make races-full: for an hour
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
-#   make claims      every claim with its switch and its mutants, into out/claims; 25 minutes at most on two cores
+#   make claims      every claim at twelve seeds, without its switch and with its mutants at three, into out/claims; 40 minutes on two cores
 #   make docs        the pages that programs write, into out/docs; docs/results/README.md
 #   make site        the documentation as a site with search, gallery and Python interface, into out/site
 #   make fuzz        files and messages drawn from their types, and damaged ones, for an hour on all cores (tools/fuzz)
@@ -146,7 +146,7 @@ wheel: | $(BIN)/python
 	build/wheel/venv/bin/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
 	build/wheel/venv/bin/python $(INSTALL) build/wheel/*.whl
 	cd build/wheel/empty && ../venv/bin/pendant robots >/dev/null && \
-		../venv/bin/python -c "import app.serving; from app.runs.coverage import claiming; assert claiming()" && \
+		../venv/bin/python -c "import app.serving; from app.session.prepare import claiming; assert claiming()" && \
 		../venv/bin/pendant sweep sequence-limit 2>&1 | grep -q "pip install 'pendant-sim\[studies\]'"
 	@rm -rf build/wheel
 
@@ -170,7 +170,7 @@ mutate: $(VENV)/dev.stamp
 	$(BIN)/python -m tools.mutants
 
 claims: $(VENV)/dev.stamp kernels
-	$(BIN)/pendant claims --mutants --out out/claims
+	$(BIN)/python -m tools.claims --seeds 1-12 --mutants-at 1,2,$$((0x$$(git rev-parse --short=6 HEAD) % 10 + 3)) --out out/claims
 
 # Warnings end it: a link that leads nowhere, a name of the interface that is not found.
 site: $(VENV)/dev.stamp docs
@@ -179,7 +179,7 @@ site: $(VENV)/dev.stamp docs
 	@echo "out/site/index.html"
 
 docs: $(VENV)/dev.stamp
-	@for page in modules reactions traceability claims_page results; do $(BIN)/python -m tools.$$page || exit 1; done
+	@for page in modules reactions traceability claims.claims_page results; do $(BIN)/python -m tools.$$page || exit 1; done
 
 fuzz: $(VENV)/dev.stamp
 	$(BIN)/python -m tools.fuzz --seconds 3600 --seed $(SEED)

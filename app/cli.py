@@ -36,7 +36,6 @@ from app.commands.fit_command import FIT_EXAMPLES, fit_
 from app.commands.import_command import IMPORT_EXAMPLES, import_
 from app.commands.run_command import RUN_EXAMPLES, run_
 from app.commands.sweep_command import SWEEP_EXAMPLES, sweep_
-from app.ending import ending
 from app.files.bad_input import BadInput
 from app.files.library import load_arm, own_robots, robots
 from app.session.session_file import FIRST_START, Setup
@@ -188,30 +187,6 @@ def replay(
 
 app.command("export", epilog=EXAMPLES)(export_)
 app.command("against", epilog=AGAINST_EXAMPLES)(against_)
-
-
-@app.command(epilog=example("pendant claims", "pendant claims --mutants --out results/claims"))
-def claims(
-    out: Annotated[Path, typer.Option(help="Folder for claims.md, claims.json and the runs.")] = Path("out/claims"),
-    mutants: Annotated[bool, typer.Option("--mutants", help="Each session with its mutants, too, in copies.")] = False,
-) -> None:
-    """Run each session that names claims, on and off. Exit code 1 when a row is not shown."""
-    from app.runs.claim_mutants import declared, run_mutants
-    from app.runs.coverage import cover, totals, with_trials, write
-    from app.runs.progress import counting
-
-    with ending(interrupts=True), counting("claims") as told:
-        rows = cover(out, told)
-        if mutants:
-            rows = with_trials(rows, run_mutants(declared(), told))
-    write(rows, out)
-    for row in rows:
-        if row.session is not None and not row.shown:
-            Console().print(f"[red]{row.claim.name}[/red] {escape(f'{row.session}: {row.state} {row.why}')}")
-    counts = ", ".join(f"{number} {state}" for state, number in totals(rows).items())
-    Console().print(f"{len(rows)} rows: {counts}; see {escape(str(out / 'claims.md'))}")
-    if not all(row.shown for row in rows):
-        raise typer.Exit(1)
 
 
 @app.command("robots", epilog=example("pendant robots", "pendant serve --robot ur3e"))

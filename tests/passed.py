@@ -20,8 +20,8 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 FOLDER = ROOT / "out" / "passed"
-TOPS = ("app", "sim", "pendant", "tests")
-APART = ("sessions", "mutants", "page")
+TOPS = ("app", "sim", "pendant", "tests", "tools")
+APART = ("sessions", "page")
 """Folders of assets/ of which a run uses no more than its own file."""
 
 WHOLE = bool(os.environ.get("WHOLE"))

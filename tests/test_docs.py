@@ -32,7 +32,8 @@ from pendant.walls import shapes, solids
 from tests.items import each_of
 from tests.pendant.contacts import limit
 from tests.pendant.estimates import estimate
-from tools import claims_page, missed, modules, reactions, results, traceability
+from tools import missed, modules, reactions, results, traceability
+from tools.claims import claims_page
 
 ROOT = Path(__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])

@@ -86,7 +86,7 @@ def events() -> Table:
 
 
 def claims() -> Table:
-    """The rows of `pendant claims`, by their ids."""
+    """The claims, by their ids."""
     table: Table = defaultdict(list)
     for claim in CLAIMS.values():
         for ident in claim.ids.split():

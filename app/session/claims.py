@@ -1,4 +1,4 @@
-"""Every claim and situation that a session must show: the rows of `pendant claims`. The method is that of the cited documents."""
+"""Every claim and situation that a session must show: the rows of `make claims`. The method is that of the cited documents."""
 
 from typing import NamedTuple
 
@@ -150,5 +150,5 @@ CLAIMS: dict[str, Claim] = {
     claim.name: claim
     for claim in [*_claims(), *_situations(), *(Claim(ident, text, ident) for ident, text in _SUMMARY.items()), *_embodiments()]
 }
-"""All rows by name, in the order of `pendant claims`: `A 1` .. `A 32`, `B 1` .. `B 22`, `C 1` .. `C 21`, `B fig 3a` ..
+"""All rows by name, in the order of `make claims`: `A 1` .. `A 32`, `B 1` .. `B 22`, `C 1` .. `C 21`, `B fig 3a` ..
 `B fig 4i rising`, the requirements that stand for the summary, and embodiments: `FD-8 within`."""

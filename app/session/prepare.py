@@ -10,7 +10,7 @@ from app.files.bodies import check_load, check_tool, check_tools, check_world
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import load_arm, load_tool, tools
 from app.session.claims import CLAIMS
-from app.session.session_file import Session, Setup, WorldSection, bundled, folder
+from app.session.session_file import Session, Setup, WorldSection, bundled, find, folder
 from app.session.timeline_checks import Prepared, applied, check_timeline, check_walls
 from pendant.all_settings import Settings, apply, describe, value_of
 from pendant.freedrive.settings import SequenceDynamic
@@ -174,10 +174,25 @@ def without(session: Session) -> Session:
     return msgspec.structs.replace(session, settings={**session.settings, switch: SWITCHES[switch]})
 
 
+def claiming() -> dict[str, Session]:
+    """The bundled sessions that show a claim, by name, checked.
+
+    Raises:
+        BadInput: one of them cannot be used.
+    """
+    found: dict[str, Session] = {}
+    for name in bundled("sessions"):
+        session = load(find(name), Session)
+        if session.switch is not None:
+            prepare(session, f"{name}.yaml")
+            found[name] = session
+    return found
+
+
 def _check_claims(session: Session, where: str) -> None:
     for i, name in enumerate(session.claims):
         if name not in CLAIMS:
-            allowed = "a row of `pendant claims`, such as A 3, B 22, B fig 3h falling, C 1 or FD-13"
+            allowed = "the name of a claim, such as A 3, B 22, B fig 3h falling, C 1 or FD-13"
             raise BadInput(where, f"claims[{i}]", name, allowed)
     if session.claims and session.switch is None:
         raise BadInput(where, "switch", ABSENT, "missing: the feature, such as FD-7, without which the claims do not hold")

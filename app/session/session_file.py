@@ -55,7 +55,7 @@ class Session(Setup, frozen=True, kw_only=True):
     title: Text
     watch: Text = ""  # what to look at, in two sentences; the page offers sessions that say it as scenarios
     duration: Annotated[float, Meta(ge=0.002, le=3600)]  # [s]
-    claims: Claims = []  # rows of `pendant claims` that this session shows (app/session/claims.py)
+    claims: Claims = []  # that this session shows, by their names (app/session/claims.py)
     switch: str | None = None  # the feature, or setting that is true or false or a choice, without which it must fail
     program: Program | None = None  # loaded at the start
     timeline: Annotated[list[AnyAction], Meta(max_length=MOST_STEPS)] = []

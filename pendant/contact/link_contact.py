@@ -62,8 +62,8 @@ SUDDEN = 2.0
 """so many times what as many ticks took before: a lever that goes through zero as the arm moves takes as much in them;"""
 CLEARLY = 1.5
 """and so many bounds: a swing takes less (guarded by the bench `link_hands`)."""
-FADED = 250
-"""Ticks after which a contact that faded has gone, too: an arm at 0.3 m/s has passed the levers at which 60 N are not felt."""
+FADED = 500
+"""Ticks after which a contact that faded has gone, too: an arm at 0.15 m/s has passed the levers at which 60 N are not felt."""
 CALM = 25
 """Ticks in a row in which the torques change by less than their bound, before a contact may begin again (CD-9a)."""
 SETTLED = 20

@@ -131,15 +131,6 @@ def test_a_setting_is_a_name_and_a_value(text: str, value: object) -> None:
         assert setting(text) == (text.partition("=")[0], value)
 
 
-def test_claims_says_what_is_missing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    monkeypatch.setattr("app.runs.coverage.claiming", dict)
-    assert pendant(monkeypatch, "claims", "--out", str(tmp_path)) == 1
-    said = capsys.readouterr().out
-    assert "142 rows: 0 shown, 0 fails, 0 holds without its switch" in said
-    assert "0 has no mutant, 142 missing" in " ".join(said.split())
-    assert (tmp_path / "claims.md").is_file()
-
-
 def test_the_command_runs_as_a_process_of_its_own() -> None:
     done = subprocess.run(
         [sys.executable, "-c", "from app.cli import main; main()", "run", "nowhere"], capture_output=True, text=True, check=False

@@ -5,9 +5,8 @@ from typing import Any
 import pytest
 
 from app.files.checked import convert, load
-from app.runs.coverage import claiming
 from app.runs.runner import RunOutcome, missed, run, simulate
-from app.session.prepare import prepare
+from app.session.prepare import claiming, prepare
 from app.session.session_file import Session, bundled, find
 from benchmarks import determinism
 from pendant.tick.modes import Mode

@@ -4,16 +4,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 
 from app.files.checked import BadInput, convert
-from app.runs import coverage
-from app.runs.coverage import ClaimRow, claiming, rows_of
 from app.runs.runner import RunOutcome, missed, run, simulate
 from app.session.claims import CLAIMS
 from app.session.expectation_watch import Verdict
-from app.session.prepare import prepare, without
+from app.session.expectations import Happens
+from app.session.prepare import claiming, prepare, without
 from app.session.session_file import Session, find
 from tests import golden
 from tests.passed import left_out_where_passed
@@ -21,10 +19,6 @@ from tests.passed import left_out_where_passed
 SESSIONS = claiming()
 ROOTS = (__name__,)
 """What a run of a session uses: this module, and all that it imports."""
-
-MET = RunOutcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s")])
-LATE = RunOutcome(verdicts=[Verdict(False, "mode STOP", "never came", looked=False)])
-UNMET = RunOutcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s"), Verdict(False, "mode STOP", "mode TEACH | at 2 s")])
 
 
 def ran(session: Session, out: Path, enough: Callable[[Verdict], bool] | None = None) -> RunOutcome:
@@ -62,7 +56,7 @@ def test_the_rows_are_those_of_the_sources() -> None:
 @pytest.mark.parametrize(
     ("fields", "says"),
     [
-        ({"claims": ["A 33"], "switch": "FD-7"}, "s.yaml: claims[0] = A 33: a row of `pendant claims`"),
+        ({"claims": ["A 33"], "switch": "FD-7"}, "s.yaml: claims[0] = A 33: the name of a claim"),
         ({"claims": ["A 3"]}, "s.yaml: switch: missing"),
         ({"switch": "FD-99"}, "s.yaml: switch = FD-99: one of FD-3"),
         ({"switch": "free_drive.period"}, "switch = free_drive.period"),
@@ -85,49 +79,23 @@ def test_a_switch_is_a_requirement_or_a_setting() -> None:
     assert prepare(without(by_id), "s.yaml").settings.free_drive.period == 30.0
 
 
-def test_rows_say_what_is_shown_and_what_is_missing() -> None:
-    session = made(claims=["A 3", "C 2"], switch="FD-7")
-    rows = rows_of({"s": session}, {"s": (MET, UNMET)})
-    found = {row.claim.name: row.state for row in rows}
-    assert len(rows) == len(CLAIMS)
-    assert found["A 3"] == found["C 2"] == "shown"
-    assert found["A 4"] == "missing"
-    assert coverage.totals(rows) == dict.fromkeys(coverage.STATES, 0) | {"shown": 2, "missing": len(CLAIMS) - 2}
-    assert _states(session, MET, MET) == {"holds without its switch"}
-    assert _states(session, UNMET, UNMET) == {"fails"}
-    assert _states(session, MET, LATE) == {"holds without its switch"}  # nothing that it expects was looked at
-    assert _states(session, RunOutcome(), UNMET) == {"fails"}  # one that expects nothing shows nothing
+NARROW = 0.4
+"""A range whose half width is a smaller share of its middle has to say where it comes from."""
+
+BRIEF = 0.05
+"""So has a window for an event that is shorter [s]."""
 
 
-def _states(session: Session, on: RunOutcome, off: RunOutcome) -> set[str]:
-    return {row.state for row in rows_of({"s": session}, {"s": (on, off)}) if row.session}
+@pytest.mark.parametrize("name", SESSIONS)
+def test_a_narrow_range_says_where_it_comes_from(name: str) -> None:
+    """What one run gave is no bound: arms differ."""
+    unsaid = [expectation for expectation in SESSIONS[name].expectations if not expectation.why and _narrow(expectation)]
+    assert unsaid == []
 
 
-def test_claims_are_written_as_a_page_and_as_data(tmp_path: Path) -> None:
-    rows = [ClaimRow(CLAIMS["A 4"]), *rows_of({"s": made(claims=["A 3"], switch="FD-7")}, {"s": (UNMET, UNMET)})]
-    coverage.write(rows, tmp_path / "new")
-    page = (tmp_path / "new" / "claims.md").read_text()
-    assert "| A 3 | a signal shorter" in page
-    assert "| s | mode TEACH<br>mode STOP | FD-7 | no | yes | - | fails: mode STOP: mode TEACH \\| at 2 s |" in page
-    data = msgspec.json.decode((tmp_path / "new" / "claims.json").read_bytes())
-    row = next(row for row in data if row["name"] == "A 3")
-    assert row["checks"] == ["mode TEACH", "mode STOP"]
-    assert (row["switch"], row["passed"], row["failed_when_off"]) == ("FD-7", False, True)
-    assert (data[0]["passed"], data[0]["seed"], row["seed"]) == (None, None, made().seed)
-    assert row["mutants"] == []
-    (tmp_path / "file").write_text("")
-    with pytest.raises(BadInput):
-        coverage.write(rows, tmp_path / "file")
-
-
-def test_all_claiming_sessions_run_in_parallel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    short = made(duration=0.1, claims=["A 3"], switch="FD-7", expectations=[{"expect": "state", "mode": "TEACH", "at": 0.05}])
-    monkeypatch.setattr(coverage, "claiming", lambda: {"one": short, "two": short})
-    told: list[tuple[int, int]] = []
-    rows = coverage.cover(tmp_path, lambda done, of: told.append((done, of)))
-    assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
-    assert [(row.session, row.passed, row.failed_when_off) for row in rows if row.session] == [
-        ("one", True, False),
-        ("two", True, False),
-    ]
-    assert (tmp_path / "two" / "off" / "events.jsonl").is_file()
+def _narrow(expectation: Any) -> bool:
+    ranges = [*getattr(expectation, "numbers", {}).values(), expectation]
+    bounds = [(getattr(each, "min", None), getattr(each, "max", None)) for each in ranges]
+    if any(low is not None and high is not None and 0.0 < high - low < NARROW * abs(high + low) for low, high in bounds):
+        return True
+    return isinstance(expectation, Happens) and expectation.end is not None and expectation.end - expectation.begin < BRIEF

@@ -1,7 +1,7 @@
 """Writes out/docs/claims.md: a row a claim, then all that was expected and seen.
 
-Run: `python -m tools.claims_page`. Given the claims.json that `make claims` wrote last, it takes over first what that run showed,
-into docs/results/claims.csv.
+Run: `python -m tools.claims.claims_page`. Given the claims.json that `make claims` wrote last, it takes over first what that run
+showed, into docs/results/claims.csv.
 """
 
 import csv
@@ -13,25 +13,26 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from app.runs.claim_mutants import Mutant, declared
-from app.runs.coverage import claiming
+from app.runs.seed_runs import seeds_in
 from app.session.claims import CLAIMS
 from app.session.measures import watch
-from app.session.prepare import prepare
+from app.session.prepare import claiming, prepare
 from app.session.session_file import Session
+from tools.claims.claim_mutants import Mutant, declared
+from tools.claims.coverage import in_short
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PAGE, SHOWN, RUN = ROOT / "out/docs/claims.md", ROOT / "docs/results/claims.csv", ROOT / "out/claims/claims.json"
 
 HEAD = """# Claims
 
-Written by `python -m tools.claims_page` from the sessions, the mutants and [claims.csv](../../docs/results/claims.csv). A
-claim is shown where its session (`assets/sessions/`) meets what it expects, and does not with its switch off, nor with any of
-its mutants: the smallest changes of code that take away what the claim says (`assets/mutants/`). `yes`: the last `make claims`
-saw all of that. `not run`: seed, expectations or mutants are newer than it. The second table has what each session expects,
-each mutant, and what was seen.
+Written by `python -m tools.claims.claims_page` from the sessions, the mutants and [claims.csv](../../docs/results/claims.csv). A
+claim is shown where its session (`assets/sessions/`) meets what it expects at all seeds, and at three of them does not with its
+switch off, nor with any of its mutants: the smallest changes of code that take away what the claim says
+(`tools/claims/mutants/`). `yes`: the last `make claims` saw all of that. `not run`: expectations or mutants are newer than it.
+The second table has what each session expects, each mutant, and what was seen.
 
-| claim | to show | ids | sessions: seed, mutants, shown |
+| claim | to show | ids | sessions: seeds, mutants, shown |
 |---|---|---|---|
 """
 
@@ -49,19 +50,26 @@ Row = dict[str, Any]
 
 
 class Seen(NamedTuple):
-    """A row of claims.csv: what the last run says of a claim and a session."""
+    """A row of claims.csv: what the last run says of a claim and a session. Seeds are as `seeds_in` reads them, or ""."""
 
     claim: str
     session: str
-    seed: int
+    passed: str  # seeds at which the session met what it expects
+    failed: str  # seeds at which it did not
+    held: str  # seeds at which it did with its switch off
     mutants: int
-    shown: str  # "yes" or "no"
+    not_noticed: int  # of these, at one seed at least
     of: str  # digest of what ran
 
+    @property
+    def shown(self) -> str:
+        """ "yes" or "no"."""
+        return "no" if self.failed or self.held or self.not_noticed else "yes"
 
-def digest(seed: int, checks: Iterable[str], mutants: Iterable[tuple[str, str]]) -> str:
-    """Of what a row runs: the seed, what is expected in words, and each mutant in words with its file. 12 hexadecimal digits."""
-    return hashlib.sha256(msgspec.json.encode([seed, list(checks), sorted(mutants)])).hexdigest()[:12]
+
+def digest(checks: Iterable[str], mutants: Iterable[tuple[str, str]]) -> str:
+    """Of what a row runs: what is expected in words, and each mutant in words with its file. 12 hexadecimal digits."""
+    return hashlib.sha256(msgspec.json.encode([list(checks), sorted(mutants)])).hexdigest()[:12]
 
 
 def seen_in(rows: Iterable[Row]) -> list[Seen]:
@@ -70,19 +78,19 @@ def seen_in(rows: Iterable[Row]) -> list[Seen]:
     for row in rows:
         if row["session"] is not None:
             tried = [(mutant["what"], mutant["file"]) for mutant in row["mutants"]]
-            noticed = all(mutant["noticed"] for mutant in row["mutants"])
-            shown = "yes" if row["passed"] and row["failed_when_off"] and noticed else "no"
-            of = digest(row["seed"], row["checks"], tried)
-            found.append(Seen(row["name"], row["session"], row["seed"], len(tried), shown, of))
+            passed = in_short(set(row["seeds"]) - set(row["failed"]))
+            missed = sum(bool(mutant["not_noticed"]) for mutant in row["mutants"])
+            seeds = passed, in_short(row["failed"]), in_short(row["held_when_off"])
+            found.append(Seen(row["name"], row["session"], *seeds, len(tried), missed, digest(row["checks"], tried)))
     return found
 
 
 def read_seen(path: Path = SHOWN) -> dict[tuple[str, str], Seen]:
     """claims.csv, by claim and session."""
     with path.open(encoding="utf-8", newline="") as file:
-        rows = [
-            Seen(r["claim"], r["session"], int(r["seed"]), int(r["mutants"]), r["shown"], r["of"]) for r in csv.DictReader(file)
-        ]
+        read = csv.reader(file)
+        next(read)
+        rows = [Seen(row[0], row[1], row[2], row[3], row[4], int(row[5]), int(row[6]), row[7]) for row in read]
     return {(row.claim, row.session): row for row in rows}
 
 
@@ -99,7 +107,6 @@ class Expected(NamedTuple):
 
     claim: str
     session: str
-    seed: int
     switch: str
     checks: list[str]
     mutants: list[Mutant]
@@ -107,7 +114,7 @@ class Expected(NamedTuple):
     @property
     def of(self) -> str:
         """See `digest`."""
-        return digest(self.seed, self.checks, [(mutant.what, mutant.file) for mutant in self.mutants])
+        return digest(self.checks, [(mutant.what, mutant.file) for mutant in self.mutants])
 
 
 def expected() -> list[Expected]:
@@ -118,7 +125,6 @@ def expected() -> list[Expected]:
         Expected(
             claim,
             name,
-            session.seed,
             session.switch or "",
             words[name],
             [mutant for mutant in mutants if mutant.session == name and claim in mutant.claims],
@@ -145,12 +151,21 @@ def page(wanted: list[Expected], seen: dict[tuple[str, str], Seen]) -> str:
     lines: list[str] = []
     for claim in CLAIMS.values():
         own = [each for each in wanted if each.claim == claim.name]
-        told = [
-            f"`{each.session}`: {each.seed}, {len(each.mutants)}, {shown(each, seen.get((each.claim, each.session)))}"
-            for each in own
-        ]
+        told = [f"`{each.session}`: {_in_short(each, seen.get((each.claim, each.session)))}" for each in own]
         lines.append(_line([claim.name, claim.text, claim.ids, "<br>".join(told) or "none"]))
     return HEAD + "\n".join(lines) + "\n"
+
+
+def _in_short(each: Expected, seen: Seen | None) -> str:
+    """The seeds at which it passed, mutants that were noticed of all, and whether it is shown."""
+    if seen is None or seen.of != each.of:
+        return f"-, {len(each.mutants)}, {NOT_RUN}"
+    return f"{seen.passed or '-'}, {seen.mutants - seen.not_noticed} of {seen.mutants}, {seen.shown}"
+
+
+def passed_at() -> dict[str, list[int]]:
+    """Sessions that show claims, and the seeds at which each has passed in the last `make claims`."""
+    return {seen.session: seeds_in(seen.passed) for seen in read_seen().values() if seen.passed}
 
 
 def details(wanted: list[Expected], seen: dict[tuple[str, str], Seen], rows: Iterable[Row]) -> str:

@@ -1,7 +1,8 @@
 """Targeted mutants: the smallest change of code that takes away exactly what a claim says, and whether its session notices it.
 
-They are data, in assets/mutants. Each runs in a copy of the product, never in the product itself. Kernels are compiled again
-where the change can be in them: in the changed module and in every one that imports it, itself or by others.
+They are data, in tools/claims/mutants. Each runs in a copy of the product, never in the product itself, at all seeds in one
+process. Kernels are compiled again, once, where the change can be in them: in the changed module and in every one that imports
+it, itself or by others.
 """
 
 import ast
@@ -12,7 +13,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -26,6 +27,8 @@ from app.files.library import ASSETS
 if TYPE_CHECKING:
     from multiprocessing.context import ForkServerContext, ForkServerProcess
 
+FOLDER = Path(__file__).parent / "mutants"
+
 PRODUCT = ASSETS.parent
 """The folder of the product's packages."""
 
@@ -34,7 +37,7 @@ TOPS = ("app", "sim", "pendant", "assets")
 LINKED = (".nbc", ".nbi", ".glb")
 
 LONGEST = 180.0
-"""A mutant that has not ended by then never will [s]."""
+"""A session with a mutant that has not ended by then never will [s]."""
 
 Verdicts = list[tuple[bool, str, str, bool]]
 """Of each expectation: passed, what was expected, what was seen, and whether its moment came."""
@@ -62,8 +65,13 @@ class Trial(NamedTuple):
     """What became of a session with a mutant."""
 
     mutant: Mutant
-    noticed: bool  # it failed, and for the reason that the mutant names
-    seen: str
+    not_noticed: tuple[int, ...]  # seeds at which the session did not fail for the reason that the mutant names
+    seen: str  # at the first of these, or else at the first of all
+
+    @property
+    def noticed(self) -> bool:
+        """Whether the session noticed it at each seed."""
+        return not self.not_noticed
 
 
 def declared() -> list[Mutant]:
@@ -72,7 +80,7 @@ def declared() -> list[Mutant]:
     Raises:
         BadInput: a file cannot be read.
     """
-    paths = sorted((ASSETS / "mutants").glob("*.yaml"))
+    paths = sorted(FOLDER.glob("*.yaml"))
     return [mutant for path in paths for mutant in load(path, MutantFile).mutants]
 
 
@@ -150,17 +158,23 @@ def _imports(path: Path, known: set[str]) -> set[str]:
     return found & known
 
 
-def judged(mutant: Mutant, verdicts: Verdicts | str) -> Trial:
-    """Whether the session noticed the mutant, of what it came to, and what was seen."""
+def judged(mutant: Mutant, told: dict[int, Verdicts | str]) -> Trial:
+    """Whether the session noticed the mutant at each seed, of what it came to there, and what was seen."""
+    found = {seed: _judged(mutant, verdicts) for seed, verdicts in told.items()}
+    missed = tuple(seed for seed, (noticed, _) in found.items() if not noticed)
+    return Trial(mutant, missed, found[next(iter(missed or found))][1])
+
+
+def _judged(mutant: Mutant, verdicts: Verdicts | str) -> tuple[bool, str]:
     if isinstance(verdicts, str):
-        return Trial(mutant, False, verdicts)
+        return False, verdicts
     failed = [(expected, seen, looked) for passed, expected, seen, looked in verdicts if not passed]
     named = [f"{expected}: {seen}" for expected, seen, looked in failed if looked and mutant.fails in expected]
     if named:
-        return Trial(mutant, True, named[0])
+        return True, named[0]
     if failed:
-        return Trial(mutant, False, f"fails, but for another reason: {failed[0][0]}: {failed[0][1]}")
-    return Trial(mutant, False, "everything is as expected")
+        return False, f"fails, but for another reason: {failed[0][0]}: {failed[0][1]}"
+    return False, "everything is as expected"
 
 
 @dataclass(slots=True)
@@ -168,33 +182,43 @@ class _Run:
     mutant: Mutant
     process: "ForkServerProcess"
     told: Connection
-    until: float
+    seeds: tuple[int, ...]
     folder: "tempfile.TemporaryDirectory[str]"
+    found: dict[int, Verdicts | str] = field(default_factory=dict[int, "Verdicts | str"])
+    until: float = field(default_factory=lambda: time.monotonic() + LONGEST)
+
+    def over(self) -> bool:
+        """Take in what the process said of its next seeds; True when it has said all, or will say no more."""
+        with suppress(EOFError):
+            while len(self.found) < len(self.seeds) and self.told.poll():
+                self.found[self.seeds[len(self.found)]] = self.told.recv()
+                self.until = time.monotonic() + LONGEST
+        return len(self.found) == len(self.seeds) or not self.process.is_alive() or time.monotonic() >= self.until
 
     def end(self) -> Trial:
-        """Take in what the process said, or that it says nothing; end it."""
-        verdicts: Verdicts | str = f"has not ended after {LONGEST:g} s" if time.monotonic() >= self.until else "breaks down"
-        if self.told.poll():
-            with suppress(EOFError):
-                verdicts = self.told.recv()
+        """End the process; of a seed that it said nothing of, say why."""
+        late = time.monotonic() >= self.until
         self.told.close()
         self.process.kill()
         self.process.join()
         self.folder.cleanup()
-        return judged(self.mutant, verdicts)
+        unsaid = f"has not ended after {LONGEST:g} s" if late else "breaks down"
+        return judged(self.mutant, {seed: self.found.get(seed, unsaid) for seed in self.seeds})
 
 
 def run_mutants(
     chosen: Sequence[Mutant],
+    seeds: Sequence[int],
     told: Callable[[int, int], None] = lambda done, of: None,
     workers: int | None = None,
     product: Path = PRODUCT,
 ) -> list[Trial]:
-    """Run the session of each mutant in a copy with its change, in parallel.
+    """Run the session of each mutant in a copy with its change, at each seed; copies in parallel.
 
     Args:
         chosen: the mutants.
-        told: how many runs are done, of how many.
+        seeds: at which each runs.
+        told: how many copies are done, of how many.
         workers: processes at once; None: as many as there are cores.
         product: what is copied.
 
@@ -204,7 +228,7 @@ def run_mutants(
     for mutant in chosen:
         mutated(mutant, product)
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["app.runs.mutant_trial"])
+    context.set_forkserver_preload(["tools.claims.mutant_trial"])
     trials: dict[int, Trial] = {}
     running: dict[int, _Run] = {}
     waiting = list(enumerate(chosen))
@@ -212,11 +236,11 @@ def run_mutants(
         while waiting or running:
             while waiting and len(running) < (workers or os.cpu_count() or 1):
                 place, mutant = waiting.pop(0)
-                running[place] = _started(context, mutant, product)
+                running[place] = _started(context, mutant, tuple(seeds), product)
             left = min(run.until for run in running.values()) - time.monotonic()
             wait([run.told for run in running.values()], timeout=min(1.0, max(0.0, left)))
             for place, run in list(running.items()):
-                if run.told.poll() or not run.process.is_alive() or time.monotonic() >= run.until:
+                if run.over():
                     trials[place] = running.pop(place).end()
                     told(len(trials), len(chosen))
     finally:
@@ -225,15 +249,15 @@ def run_mutants(
     return [trials[place] for place in range(len(chosen))]
 
 
-def _started(context: "ForkServerContext", mutant: Mutant, product: Path) -> _Run:
-    from app.runs.mutant_trial import trial  # it imports much
+def _started(context: "ForkServerContext", mutant: Mutant, seeds: tuple[int, ...], product: Path) -> _Run:
+    from tools.claims.mutant_trial import Asked, trial  # it imports much
 
     folder = tempfile.TemporaryDirectory(prefix="pendant-mutant-")
     copy = copy_of(product, Path(folder.name) / "product")
     change(mutant, copy, product)
     ours, theirs = context.Pipe(duplex=False)
-    args = str(copy), (mutant.session, mutant.fails), str(copy.parent / "out"), theirs
-    process = context.Process(target=trial, args=args, daemon=True)
+    asked = Asked(str(copy), mutant.session, mutant.fails, seeds)
+    process = context.Process(target=trial, args=(asked, theirs), daemon=True)
     process.start()
     theirs.close()
-    return _Run(mutant, process, ours, time.monotonic() + LONGEST, folder)
+    return _Run(mutant, process, ours, seeds, folder)
