@@ -117,7 +117,7 @@ class Docks:
             self.settings = SettingsTab(gui, self.settings_dock, loop, arm.n)
         self._lower = gui.add_panel()
         with self._lower.add_tab("Events") as self._events_dock:
-            self.journal = Journal(gui)
+            self.journal = Journal(gui, arm.chain.joints)
         with self._lower.add_tab("Contacts") as self._contacts_dock:
             self.contacts = Contacts(server, loop, arm)
         with self._lower.add_tab("Plots") as self.plots_dock:

@@ -132,4 +132,4 @@ class Control:
             return text, "It holds the arm.", Colour.AMBER
         if left > 0.0:
             return text, f"Free in {math.ceil(left)} s, or when released.", Colour.AMBER
-        return text, f"Idle for {SILENCE:.0f} s: any press takes over.", Colour.AMBER
+        return f"{name} idle for {SILENCE:.0f} s", "Press anything to take over.", Colour.AMBER

@@ -1,6 +1,6 @@
 """The event log, newest first: the same again is one row with a count, and a row leads to its moment."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import viser
@@ -55,9 +55,10 @@ FILTERS: dict[str, Callable[[Event], bool]] = {
 
 
 class Journal:
-    """The tab with the event log."""
+    """The tab with the event log; `joints` are the names of the arm's joints."""
 
-    def __init__(self, gui: viser.GuiApi) -> None:
+    def __init__(self, gui: viser.GuiApi, joints: Sequence[str]) -> None:
+        self._joints = joints
         self.look_at: Callable[[int | None], None] = lambda tick: None  # told the tick to show, None for now
         self._rows: list[LogRow] = []
         self._tick = 0
@@ -117,7 +118,7 @@ class Journal:
                 lines.append(svg.LogLine("", "Started over", Colour.GREY, "", 0))
                 moments = {name: tick for name, tick in moments.items() if tick > 0}
                 continue
-            time, text = f"{row.event.tick / TICK_RATE:.2f} s", _text(row.event)
+            time, text = f"{row.event.tick / TICK_RATE:.2f} s", _text(row.event, self._joints)
             moment = f"{time} {text}"
             moments.setdefault(moment, row.event.tick)
             lines.append(svg.LogLine(time, text, SEVERITY_COLOURS[TABLE[row.event.kind].severity], moment, row.count))
@@ -131,8 +132,8 @@ class Journal:
         return changed
 
 
-def _text(event: Event) -> str:
-    return setting_change(event) if event.kind in (Kind.SETTING_CHANGED, Kind.SETTING_REFUSED) else render(event)[0]
+def _text(event: Event, joints: Sequence[str]) -> str:
+    return setting_change(event, joints) if event.kind in (Kind.SETTING_CHANGED, Kind.SETTING_REFUSED) else render(event)[0]
 
 
 def _subject(event: Event) -> tuple[object, ...]:

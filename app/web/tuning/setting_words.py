@@ -1,5 +1,7 @@
 """Settings in the words of the field: titles of sections, names of rows, what a row says of itself."""
 
+from collections.abc import Sequence
+
 from pendant.all_settings import describe, find
 from pendant.events.event import Event, Kind
 from pendant.settings.schema import SettingError, SettingRow, Value
@@ -107,8 +109,8 @@ def found(words: str, rows: list[SettingRow]) -> list[SettingRow]:
     return [row for row in rows if all(word in text(row) for word in wanted)]
 
 
-def setting_change(event: Event) -> str:
-    """What an event says of a setting that was changed, or was not: its name and value in words."""
+def setting_change(event: Event, joints: Sequence[str]) -> str:
+    """What an event says of a setting that was changed, or was not: its name and value in words. `joints`: the names of the arm's."""
     name, refused = str(event.values["name"]), event.kind is Kind.SETTING_REFUSED
     value = event.values["value" if refused else "new"]
     try:
@@ -119,7 +121,11 @@ def setting_change(event: Event) -> str:
     if row.name == "program.speed" and isinstance(value, float):
         text = f"Speed {100.0 * value:.0f} %"
     elif section in ("joints", "axes") and own.lstrip("jr") in (*"xyz", *map(str, range(1, 13))):
-        what = f"Joint {own[1:]}" if section == "joints" else f"{'Turning about' if own[0] == 'r' else 'Moving along'} {own[-1]}"
+        if section == "joints":
+            number = int(own[1:])
+            what = joints[number - 1].replace("_", " ").capitalize() if number <= len(joints) else f"Joint {number}"
+        else:
+            what = f"{'Turning about' if own[0] == 'r' else 'Moving along'} {own[-1]}"
         text = f"{what}: {'free' if value else 'locked'}"
     else:
         own = "" if own == "on" else f", {name_of(row).lower()}"  # the switch of a section is that section

@@ -110,7 +110,7 @@ def test_a_watcher_is_told_when_it_may_act_and_who_lost_control_that_it_has(serv
     assert "data-pd-watching" in strips[1].text.shown
     assert "data-pd-watching" not in strips[0].text.shown
     clock.now += SILENCE
-    until(lambda: shown(strips, "Idle: others may take it.", "Idle for 10 s: any press takes over."), "the warning")
+    until(lambda: shown(strips, "Idle: others may take it.", "Press anything to take over."), "the warning")
     press(second, strips[1].take)
     until(lambda: shown(strips, "Window 2 took control", "You have control"), "the former operator is told")
 
