@@ -210,6 +210,7 @@ def run_mutants(
     chosen: Sequence[Mutant],
     seeds: Sequence[int],
     told: Callable[[int, int], None] = lambda done, of: None,
+    *,
     workers: int | None = None,
     product: Path = PRODUCT,
 ) -> list[Trial]:

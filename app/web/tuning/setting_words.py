@@ -110,7 +110,7 @@ def found(words: str, rows: list[SettingRow]) -> list[SettingRow]:
 
 
 def setting_change(event: Event, joints: Sequence[str]) -> str:
-    """What an event says of a setting that was changed, or was not: its name and value in words; `joints` are named as the arm has them."""
+    """Name and value, in words, of a setting that was changed, or was not; `joints` has the names of the arm's."""
     name, refused = str(event.values["name"]), event.kind is Kind.SETTING_REFUSED
     value = event.values["value" if refused else "new"]
     try:

@@ -252,7 +252,7 @@ def test_what_was_felt_clearly_is_lost_at_once(size: float, latest: int) -> None
 
 def test_a_hand_that_is_taken_away_slowly_is_lost_later() -> None:
     """Over 0.3 s: the torques of a lever that shrinks are the same."""
-    torques = stream(900, UPPER, (START, 300, 30.0))
+    torques = stream(1200, UPPER, (START, 300, 30.0))
     torques[300:450] += np.linspace(30.0, 0.0, 150)[:, None] * np.array(UPPER)
     (_, gained), (at, lost) = run(torques)
     assert (gained.change, lost.change) == (Change.GAINED, Change.LOST)
