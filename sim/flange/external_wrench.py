@@ -95,7 +95,7 @@ class ExternalWrench:
         own["noise"] = told.noise_force, told.noise_torque
         # It is the mean of a window, and the sensor's zero has wandered since.
         own["walk"] = math.hypot(told.walk_force, told.noise_force / math.sqrt(WINDOW))
-        own["gain"] = arm.accuracy.wrench_gain + 2.0 * arm.accuracy.wrench_cross_talk / 5.0
+        own["gain"] = told.gain
         own["shaking"] = told.noise_acceleration
         own["jitter"] = 2.0 * ((0.0 if gyro is None else gyro.noise) / TICK) ** 2
         own["turning"] = math.sqrt(own["jitter"] * forces.passed)

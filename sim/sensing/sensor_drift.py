@@ -117,7 +117,9 @@ def sensor_spec(arm: Arm) -> SensorSpec:
     drift, offset = lasting(arm.accuracy, force_torque.drift), most(arm.accuracy, force_torque.drift)
     noise = (force_torque.force.noise, force_torque.torque.noise)
     shaken = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
-    spec, wander = SensorSpec(*drift, *offset, *noise, shaken), force_torque.drift
+    # Each of the two other axes of its kind gives at most a fifth of the cross-talk (sim/sensing/calibration.py).
+    gain = arm.accuracy.wrench_gain + 2.0 * arm.accuracy.wrench_cross_talk / 5.0
+    spec, wander = SensorSpec(*drift, *offset, *noise, shaken, gain=gain), force_torque.drift
     if wander is None:
         return spec._replace(walk_force=0.0, quickest=math.inf)
     quickest = SPREAD[0] * wander.warm_up

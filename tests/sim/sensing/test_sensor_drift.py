@@ -156,3 +156,9 @@ def test_a_sensor_without_drift_stays_where_it_is() -> None:
     spec = sensor_spec(msgspec.structs.replace(UR5E, sensors=msgspec.structs.replace(UR5E.sensors, force_torque=still)))
     assert drift(spec, 300_000) == (0.0, 0.0)
     assert drift(sensor_spec(UR5E), 0) == (0.0, 0.0)
+
+
+def test_the_gain_that_is_told_is_the_arms_own() -> None:
+    better = msgspec.structs.replace(UR5E.accuracy, wrench_gain=0.002, wrench_cross_talk=0.005)
+    assert sensor_spec(UR5E).gain == pytest.approx(0.014)
+    assert sensor_spec(msgspec.structs.replace(UR5E, accuracy=better)).gain == pytest.approx(0.004)
