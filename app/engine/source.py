@@ -61,5 +61,5 @@ def source_commit() -> str:
 
 
 def identity() -> dict[str, str]:
-    """What two processes must have in common to compute the same bits: versions by name, and the source digest."""
+    """Values that are equal in two processes that compute the same bits: versions by name, and the source digest."""
     return {**versions(), "source": source_digest()}

@@ -1,4 +1,4 @@
-"""What `pendant run` prints: progress while it runs, then the modes over time and the expectations."""
+"""Output of `pendant run`: progress while it runs, then the modes over time and the expectations."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -178,7 +178,7 @@ def run(
     """Run a session to its end.
 
     Args:
-        session: what happens and what is expected.
+        session: time line and expectations.
         prepared: the same session, checked.
         simulation: simulation of `prepared`, at its start.
         out: folder for events.jsonl; it is made if it is missing. None: no file.

@@ -30,7 +30,7 @@ MISFIT = 0.05  # relative error of the terms' shapes that remains when all is le
 
 
 class Turning(NamedTuple):
-    """What the joints do in a tick: friction is learned from this."""
+    """Motion and torques of the joints in a tick, from which friction is learned."""
 
     speed: Array  # of the motors (n,) [rad/s]
     surplus: Array  # tau_m - J theta_dd - tau_dyn, or the same by the deflection (n,) [N·m]; NaN where tau_m is unknown

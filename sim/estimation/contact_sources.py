@@ -221,7 +221,7 @@ def _to_load(own, arm_side, tool_side):
 
 @kernel
 def _transfer(own, R, felt, out) -> None:
-    """Force, specific force at the load's centre, gravity, and the change of what the turning adds, each (3,) in F."""
+    """Force, specific force at the load's centre, gravity, and change of the acceleration by turning, each (3,) in F."""
     wrench, acceleration, moved = felt
     before, gravity = own.added, own.gravity
     for k in range(3):
@@ -241,7 +241,7 @@ def _feel_behind(own, momentum, errors) -> None:
 
 @kernel
 def _keep(out, momentum, errors) -> None:
-    """What is known of the torques of contacts behind the sensor, in the order of `ContactSignals`."""
+    """Torques of contacts behind the sensor, with causes and errors, in the order of `ContactSignals`."""
     n, m = errors.causes.shape
     for i in range(n):
         out[i], out[n + n * m + i], out[2 * n + n * m + i] = momentum.residual[i], momentum.held[i], momentum.doubt[i]
@@ -255,7 +255,7 @@ def _keep(out, momentum, errors) -> None:
 def _derive(own, rigid, made, which) -> None:
     """Force of a link on the outside, specific force at its point, and gravity, each (3,) in B, into a row of signals.
 
-    The force is the smallest one that explains what the joints that can move the point feel of contacts behind the sensor: with
+    The force is the smallest that explains the torques of contacts behind the sensor, at the joints that can move the point: with
     J^T F = tau, F = (J J^T + d²)^-1 J tau.
     """
     (felt, out), (link, went_on) = made, which

@@ -41,7 +41,7 @@ FLOOR = 0.004
 
 
 class Driven(NamedTuple):
-    """What is known of a tick besides the rigid model, n joints."""
+    """Inputs of the observer in a tick, besides the rigid model, n joints."""
 
     q: Array  # (n,) measured [rad]
     deflection: Array  # (n,) torque of the deflection, with the believed stiffness [N·m]

@@ -100,7 +100,7 @@ class TransmissionTorque:
             covariance=(n, 2, 2),
             walk=(n, 2),
             differ=(n,),  # smoothed difference of model and deflection [N·m]
-            slow_square=(n,),  # mean square of that
+            slow_square=(n,),  # mean square of this difference
             fast_square=(n,),  # mean square of the rest of the difference
             compared=(n,),  # ticks over which these means were taken
             ways=(3, n),
