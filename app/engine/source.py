@@ -17,8 +17,7 @@ PARTS = (app, assets, pendant, sim)
 
 
 def digest_of(root: Path, folders: Iterable[str]) -> str:
-    """12 hex digits over names and bytes of all files of folders of `root`, without files that Python or an editor leaves
-    there."""
+    """12 hex digits over names and bytes of all files of folders of `root`, except those that Python or an editor leaves."""
     files = [path for folder in folders for path in (root / folder).rglob("*") if path.is_file()]
     found = hashlib.sha256()
     for name in sorted(path.relative_to(root).as_posix() for path in files):

@@ -160,7 +160,7 @@ class _Spreading:
         from distributed import KilledWorker
 
         try:
-            return future.result(timeout=ANSWER)  # it is small; meanwhile nobody looks after the processes
+            return future.result(timeout=ANSWER)  # the result is small; meanwhile nobody watches the processes
         except KilledWorker:
             if lives > 0:
                 raise Lost from None

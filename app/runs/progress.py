@@ -80,8 +80,7 @@ def show_all(names: list[str], outcomes: list[RunOutcome], out: Path) -> None:
 
 
 def show_seeds(found: list[SessionAtSeeds], out: Path) -> None:
-    """Print the results of sessions at many seeds: a line for each, under it the expectations that were not met, and the
-    nearest."""
+    """Print the results of sessions at many seeds: a line for each, under it the expectations not met, and the nearest one."""
     table = Table("", "session", "passed", box=None, pad_edge=False)
     for each in found:
         mark = "[bold red]FAIL[/bold red]" if each.failed else "[green]pass[/green]"

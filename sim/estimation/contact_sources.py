@@ -64,9 +64,9 @@ class ContactSources:
 
     Args:
         dynamics: the controller's model, already updated to this tick's posture when `read` is called.
-        elbow: index of the joint that the elbow is.
-        sensors: of the arm, with their ranges and their noise.
-        momentum: external torques of this tick.
+        elbow: index of the elbow joint.
+        sensors: sensors of the arm, with their ranges and their noise.
+        momentum: gives the external torques of this tick.
     """
 
     def __init__(self, dynamics: Dynamics, elbow: int, sensors: SensorNumbers, momentum: MomentumObserver) -> None:

@@ -162,7 +162,7 @@ class Lab:
         def by_hand(control: Any, act: Callable[[], None]) -> None:
             @control.on_update
             async def _(event: viser.GuiEvent) -> None:
-                if event.client_id is not None:  # a person, and not the page bringing itself up to date
+                if event.client_id is not None:  # a person, not an update by the page itself
                     act()
 
         by_hand(self.true, lambda: desk.change(AttachPayload(load=Load(mass=float(self.true.value)))))
