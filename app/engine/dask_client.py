@@ -16,19 +16,19 @@ CONFIG = {
     "distributed.scheduler.allowed-failures": 5,  # workers that may die under a task
     "distributed.admin.low-level-log-length": 100,  # memory stays as it is, however many runs
     "distributed.admin.log-length": 100,
-    "distributed.admin.tick.limit": "30s",  # a machine that is busy is no news
-    "distributed.admin.tick.interval": "500ms",  # by default each process stops the session in it fifty times a second to look
+    "distributed.admin.tick.limit": "30s",  # no warning only because the machine is busy
+    "distributed.admin.tick.interval": "500ms",  # the default interrupts the session of a process fifty times a second
     "distributed.admin.system-monitor.interval": "5s",
     "distributed.admin.system-monitor.disk": False,
     "distributed.worker.memory.monitor-interval": "1s",
     "distributed.comm.timeouts.connect": "10s",
-    "distributed.deploy.lost-worker-timeout": "60s",  # a process that died starts again; on a busy machine that takes long
+    "distributed.deploy.lost-worker-timeout": "60s",  # a process that died starts again, which is slow on a busy machine
 }
 ANSWER = 10.0
 """How long a scheduler may take to answer [s]."""
 
 PATIENCE = 60.0
-"""How long a scheduler or its first worker is waited for [s]."""
+"""Time to wait for a scheduler or its first worker [s]."""
 
 _embedded: dict[int, Any] = {}
 
@@ -39,14 +39,14 @@ def cores() -> int:
 
 
 def connect(workers: int, scheduler: str | None) -> Any:
-    """A Dask client whose workers run what this process runs.
+    """A Dask client whose workers run the same source as this process.
 
     Args:
-        workers: processes of the embedded cluster. It is started once, and kept until this process ends.
-        scheduler: address of one that exists; its workers are what they are.
+        workers: number of processes of the embedded cluster. The cluster is started once, and kept until this process ends.
+        scheduler: address of an existing scheduler, with the workers that it has; None: the embedded cluster.
 
     Raises:
-        BadInput: nobody answers there, or a worker runs something else.
+        BadInput: no scheduler answers at this address, or a worker runs another source.
     """
     from dask import config
     from distributed import Client, LocalCluster
@@ -74,7 +74,7 @@ def connect(workers: int, scheduler: str | None) -> Any:
 def crippled(workers: int) -> bool:
     """Whether a process of the embedded cluster ended for good.
 
-    Dask does not replace one that was killed while it started, and lets go of one that is late to start again.
+    Dask does not replace a process that was killed during its start, and gives up a process that restarts too late.
     """
     there = _embedded[workers].workers
     return len(there) < workers or any(each.status.name in ("closed", "failed") for each in there.values())
@@ -98,7 +98,8 @@ def _remote(scheduler: str) -> Any:
     except (OSError, ValueError, ImportError) as error:
         reason = str(error).partition("\n")[0]
     if client is None:
-        # What was half made ends here. Collected later in a thread that Dask starts, it would wait for who waits for that thread.
+        # The half-made client ends here. If it were collected later, in a thread of Dask, the two threads would wait for each
+        # other.
         gc.collect()
         raise BadInput("--scheduler", "", scheduler, f"no Dask scheduler answers there ({reason})")
     try:
@@ -111,7 +112,7 @@ def _remote(scheduler: str) -> Any:
 
 
 def check(client: Any) -> None:
-    """Compare what the workers run with what this process runs. Raises BadInput: one runs something else."""
+    """Compare the workers' source with that of this process. Raises BadInput: a worker runs another source."""
     for address, found in client.run(identity, on_error="return").items():
         if isinstance(found, Exception):
             client.close()
@@ -122,13 +123,13 @@ def check(client: Any) -> None:
 
 
 def compare(found: dict[str, str], where: str) -> None:
-    """Raise BadInput where `found` is not what this process runs."""
+    """Raise BadInput if `found` differs from the `identity` of this process."""
     for name, value in identity().items():
         if found.get(name) != value:
             raise BadInput(where, name, found.get(name, ABSENT), f"this process has {value}; both must run the same")
 
 
 def dashboard(client: Any) -> str | None:
-    """Where Dask's own dashboard is; None without bokeh, which draws it."""
+    """Address of Dask's own dashboard; None without bokeh, which draws the dashboard."""
     has = client.run_on_scheduler(importlib.util.find_spec, "bokeh") is not None
     return client.dashboard_link if has and client.scheduler_info(n_workers=0)["services"].get("dashboard") else None

@@ -1,4 +1,4 @@
-"""Which source runs: versions, commit, and a digest over all files of the product, by which machines know it."""
+"""Which source runs: versions, commit, and a digest over all files of the product, by which machines compare it."""
 
 import functools
 import hashlib
@@ -13,11 +13,11 @@ import sim
 from app.files.versions import versions
 
 PARTS = (app, assets, pendant, sim)
-"""What the numbers of a session depend on."""
+"""Packages that the numbers of a session depend on."""
 
 
 def digest_of(root: Path, folders: Iterable[str]) -> str:
-    """12 hex digits over names and bytes of all files of folders of `root`; not of what Python or an editor leaves there."""
+    """12 hex digits over names and bytes of all files of folders of `root`, except those that Python or an editor leaves."""
     files = [path for folder in folders for path in (root / folder).rglob("*") if path.is_file()]
     found = hashlib.sha256()
     for name in sorted(path.relative_to(root).as_posix() for path in files):
@@ -28,7 +28,7 @@ def digest_of(root: Path, folders: Iterable[str]) -> str:
 
 
 def commit_of(root: Path, folders: Iterable[str]) -> str:
-    """The commit, with a `+` where files of the folders are not as they are in it; "unknown" without git."""
+    """The commit, with a `+` if files of the folders differ from it; "unknown" without git."""
     try:
         name = _git(root, "rev-parse", "--short", "HEAD")
         return name + "+" * bool(_git(root, "status", "--porcelain", "--", *folders))
@@ -37,7 +37,7 @@ def commit_of(root: Path, folders: Iterable[str]) -> str:
 
 
 def _git(root: Path, *arguments: str) -> str:
-    # Given the folder, git does not take the repository that an unpacked archive happens to lie in.
+    # With the folder given, git does not take another repository in which an unpacked archive happens to lie.
     command = ["git", "--git-dir", str(root / ".git"), "--work-tree", str(root), *arguments]
     return subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout.strip()
 
@@ -49,7 +49,7 @@ def _where() -> tuple[Path, tuple[str, ...]]:
 
 @functools.cache
 def source_digest() -> str:
-    """Digest of the source that this process runs, as it was when it was first asked for."""
+    """Digest of the source that this process runs, computed at the first call."""
     return digest_of(*_where())
 
 
@@ -60,5 +60,5 @@ def source_commit() -> str:
 
 
 def identity() -> dict[str, str]:
-    """What two processes must have in common to compute the same bits: versions by name, and the source digest."""
+    """Values that are equal in two processes that compute the same bits: versions by name, and the source digest."""
     return {**versions(), "source": source_digest()}

@@ -1,4 +1,4 @@
-"""Spreads work over the workers of a Dask cluster: each piece once, results as they come, whatever dies on the way."""
+"""Spreads work over the workers of a Dask cluster: each piece once, results as they come, even if workers die."""
 
 import math
 import time
@@ -16,16 +16,16 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 AHEAD = 3
-"""Pieces in flight for each worker: one that it does, and some that wait there, so that it never waits for the next."""
+"""Pieces given to each worker: one in work, and some that wait there, so that the worker never waits for the next piece."""
 
 LOOK = 3.0
-"""How often the processes of this machine are looked at [s]."""
+"""Time between two checks of the processes of this machine [s]."""
 
 PAUSE = 0.005
-"""How often it is looked for results [s]: one that stays with its worker may go with it."""
+"""Time between two looks for results [s]. A result that is still on its worker is lost if the worker dies."""
 
 LIVES = 1
-"""Times that a piece is given out again, alone, after it was lost with all workers that tried it."""
+"""How often a piece is given out again, with nothing else running, after all workers that tried it died."""
 
 
 class Lost(Exception):
@@ -33,7 +33,7 @@ class Lost(Exception):
 
 
 class Away(Exception):
-    """A result that went with its worker or its scheduler before it came here, or is late."""
+    """A result that is late, or was lost because its worker or scheduler died before the result was fetched."""
 
 
 def spread(
@@ -45,21 +45,21 @@ def spread(
     lost: Callable[[T], R] | None = None,
     told: Callable[[str], None] = lambda line: None,
 ) -> Iterator[tuple[int, R]]:
-    """Do `work` on all items; gives the place of each among them with its result, in the order in which they end.
+    """Do `work` on all items; gives the place of each item with its result, in the order in which they end.
 
-    A single item, or one worker, is this process itself; so is everything where Dask is not installed. `items` may be a
+    This process itself does the work if there is a single item, if `workers` is 1, or if Dask is not installed. `items` may be a
     generator: it is read as far as needed.
 
     Args:
-        work: a function that a worker can import, or of the main module.
-        items: what to work on.
-        workers: processes of this machine; None: one a core.
-        scheduler: address of a Dask scheduler in place of processes of this machine.
-        lost: what stands for the result of an item whose workers died each time; None: that is an error.
-        told: told in a line what happens on the way, and where the dashboard is.
+        work: a function that a worker can import, or a function of the main module.
+        items: items to work on.
+        workers: number of processes of this machine; None: one for each core.
+        scheduler: address of a Dask scheduler that is used in place of processes of this machine.
+        lost: gives the result of an item whose workers died each time; None: such an item is an error.
+        told: is given lines for the user: what happens on the way, and where the dashboard is.
 
     Raises:
-        BadInput: a worker runs another source; a scheduler stays away; or `work` raises it.
+        BadInput: a worker runs another source; a scheduler does not come back; or `work` raises it.
     """
     items = iter(items)
     first = list(islice(items, 2))
@@ -75,7 +75,7 @@ def spread(
 
 
 def guarded(ours: dict[str, str], work: Callable[[T], R], item: T) -> R:
-    """On a worker: do `work`, if the worker runs what the sender runs; one that came later was not checked before."""
+    """On a worker: do `work` if the worker runs the sender's source. A worker that joined later was not checked before."""
     try:
         compare(ours, "the study")
     except BadInput as error:
@@ -95,7 +95,7 @@ class _Spreading:
     def run(self, items: Iterator[tuple[int, T]], lost: Callable[[T], R] | None) -> Iterator[tuple[int, R]]:
         under_way: dict[int, T] = {}
         lives: dict[int, int] = {}
-        suspects: list[int] = []  # places of what was lost with its workers
+        suspects: list[int] = []  # places of pieces whose workers died
         self._begin(under_way)
         while True:
             self._fill(items, under_way)
@@ -118,7 +118,7 @@ class _Spreading:
                 time.sleep(PAUSE)
                 continue
             except Lost:
-                # It, or one that a worker had beside it, ends workers: it is tried again when nothing else is under way.
+                # This piece, or another on the same worker, kills workers. It is tried again when nothing else is under way.
                 lives[place] -= 1
                 suspects.append(place)
                 continue
@@ -160,7 +160,7 @@ class _Spreading:
         from distributed import KilledWorker
 
         try:
-            return future.result(timeout=ANSWER)  # it is small; meanwhile nobody looks after the processes
+            return future.result(timeout=ANSWER)  # the result is small; meanwhile nobody watches the processes
         except KilledWorker:
             if lives > 0:
                 raise Lost from None

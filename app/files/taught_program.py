@@ -37,7 +37,7 @@ LONGEST = 120
 """Of what the user is told by a step [characters]."""
 
 JOINT_SPEED, LINE_SPEED, TOUCH_SPEED = 0.33, 0.25, 0.05
-"""At full speed: of a joint move, as a share of the joints' limits; of a line, and of a line until contact [m/s]."""
+"""Full speed of taught moves: a joint move, as a share of the joints' limits; a line, and a line until contact [m/s]."""
 
 MOVES = {"joint": "Move to", "line": "Line to", "touch": "Touch on the way to"}
 OTHERS = {

@@ -17,16 +17,16 @@ from app.session.session_file import Session
 class Job(NamedTuple):
     """A session to run."""
 
-    name: str  # of its file, for messages
+    name: str  # name of its file, for messages
     session: Session
-    out: Path | None  # folder for the results; None: none are kept
+    out: Path | None  # folder for the results; None: no results are kept
     realtime: bool = False
-    recorded: bool = True  # with log.mcap, summary.json and report.html; otherwise events.jsonl alone
-    enough: Callable[[Verdict], bool] | None = None  # of `run`, where nothing is recorded
+    recorded: bool = True  # with log.mcap, summary.json and report.html; otherwise only events.jsonl
+    enough: Callable[[Verdict], bool] | None = None  # argument of `run`; used only if nothing is recorded
 
 
 def work(job: Job, progress: Progress = silent) -> RunOutcome:
-    """Run one job in this process. Raises BadInput: what the session says cannot be used."""
+    """Run one job in this process. Raises BadInput: the session cannot be used."""
     prepared = prepare(job.session, job.name)
     if job.out is None or not job.recorded:
         simulation = simulate(prepared)
@@ -37,7 +37,7 @@ def work(job: Job, progress: Progress = silent) -> RunOutcome:
 
 
 def tried(job: Job) -> RunOutcome | BadInput:
-    """Run one job; what cannot be used is given back."""
+    """Run one job; returns the error if the session cannot be used."""
     try:
         return work(job)
     except BadInput as error:
@@ -45,13 +45,13 @@ def tried(job: Job) -> RunOutcome | BadInput:
 
 
 def run_each(jobs: Iterable[Job]) -> Iterator[tuple[int, RunOutcome | BadInput]]:
-    """As `run_all`, but a job that cannot be run ends no other one."""
+    """As `run_all`, but a job that cannot be run does not end the others."""
     return spread(tried, jobs)
 
 
 def run_all(jobs: Iterable[Job]) -> Iterator[tuple[int, RunOutcome]]:
     """Run all jobs on all cores; gives the place of each in `jobs` with its outcome, in the order in which they end.
 
-    Raises BadInput: a job's.
+    Raises BadInput: a job raises it.
     """
     return spread(work, jobs)

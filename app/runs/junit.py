@@ -1,4 +1,4 @@
-"""JUnit XML of sessions that ran: a suite a session, a case an expectation, as continuous integration shows them."""
+"""JUnit XML of sessions that ran, for continuous integration: one suite for each session, one case for each expectation."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,7 +9,7 @@ from app.runs.runner import RunOutcome
 
 
 def junit(outcomes: dict[str, RunOutcome], refused: Sequence[str] = ()) -> str:
-    """The document, for outcomes by the name of their session; `refused`: what is said of files that could not be run."""
+    """The document, for outcomes by the name of their session; `refused`: error lines of files that could not be run."""
     root = ElementTree.Element("testsuites", name="pendant")
     total = failed = 0
     for name, outcome in outcomes.items():

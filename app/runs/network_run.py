@@ -23,15 +23,15 @@ from sim.exchange.snapshot import Snapshot
 from sim.simulation import Simulation
 
 JOINTS = 6
-"""Of an arm that RTDE can tell."""
+"""Number of joints that an arm must have for RTDE."""
 
 
 class NetworkRun:
-    """Acts in a session as `Cabinet` does in the loop.
+    """Does in a session what `Cabinet` does in the loop.
 
     Args:
-        session: whose clients act.
-        simulation: of the session, at its start.
+        session: session whose clients act.
+        simulation: the session's simulation, at its start.
 
     Raises:
         BadInput: a field does not exist, or the arm has not six joints.
@@ -52,31 +52,31 @@ class NetworkRun:
         self._asked: list[tuple[int, DashboardLine, str | Pending]] = []  # in this tick
         self._reads: list[tuple[int, ReadField]] = []
         self._scripts = ScriptRunner(self._cabinet)
-        self._sent: list[tuple[int, SendScript, list[str]]] = []  # with what each has told
-        self._running = 0  # of them, which runs
-        self._troubles: dict[int, ScriptTrouble | None] = {}  # of those that are over, by their places
+        self._sent: list[tuple[int, SendScript, list[str]]] = []  # scripts with the lines that each has told
+        self._running = 0  # place in `_sent` of the script that runs now
+        self._troubles: dict[int, ScriptTrouble | None] = {}  # how scripts ended, by their places in the time line
         self._scripts.listen(self._take)
         self._verdicts: list[Verdict] = []
 
     def close(self) -> None:
-        """The session is over: what runs still counts as running."""
+        """The session is over: a script that is not at its end counts as running."""
         self._scripts.forget(self._take)
         self._scripts.close()
 
     def tick(self, number: int) -> None:
-        """RTDE's fields are written for who listens."""
+        """Nothing to do: it only makes `Cabinet` write RTDE's fields, as it does if somebody listens."""
 
     def told(self, event: Event) -> None:
-        """Events are in the session's own list."""
+        """Nothing to do: the session keeps its own list of events."""
 
     def repeat(self) -> None:
-        """A session does not stand still."""
+        """Nothing to do: in a session the ticks never stop for a while."""
 
     def again(self) -> None:
-        """Nor is its loop ever busy."""
+        """Nothing to do: in a session no package is repeated because the loop is busy."""
 
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot], actions: Sequence[tuple[int, OfClient]]) -> Wishes:
-        """What the clients want of the tick; `actions` are those that begin in it, with their places in the time line."""
+        """Wishes of the clients for the tick; `actions` are those that begin in this tick, with their places in the time line."""
         for place, action in actions:
             if isinstance(action, DashboardLine):
                 answer = self._commands.answer(action.send, remote=self._cabinet.state.remote)
@@ -106,7 +106,7 @@ class NetworkRun:
             self._troubles[place] = self._scripts.trouble
 
     def verdicts(self) -> list[Verdict]:
-        """Of what the clients were told, when the session is over."""
+        """Verdicts on the answers to the clients, when the session is over."""
         found = list(self._verdicts)
         for place, action, lines in self._sent:
             over, trouble = place in self._troubles, self._troubles.get(place)
@@ -120,7 +120,7 @@ class NetworkRun:
         return found
 
     def see(self, tick: int, decision: Decision) -> None:
-        """Take in what the robot decided, and judge what the clients were told."""
+        """Take the robot's decision, and judge the answers to the clients."""
         self._cabinet.see(tick, decision)
         for place, line, answer in self._asked:
             said = answer.answer(answer.asked.result(0.0)) if isinstance(answer, Pending) else answer

@@ -1,4 +1,4 @@
-"""What `pendant run` prints: progress while it runs, then the modes over time and the expectations."""
+"""Output of `pendant run`: progress while it runs, then the modes over time and the expectations."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,7 +19,7 @@ COLOURS = {Mode.NORMAL: "green", Mode.TEACH: "green", Mode.RUN: "cyan", Mode.FRE
 
 @contextmanager
 def progress(session: Session) -> Iterator[Callable[[float], None]]:
-    """A bar over the simulated seconds, on a terminal only; gives the function to tell it how far the run is."""
+    """A bar over the simulated seconds, only on a terminal; gives a function that takes the seconds done."""
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.1f} s"), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(escape(session.title), total=session.duration)
@@ -28,7 +28,7 @@ def progress(session: Session) -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def counting(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar over runs done, on a terminal only; gives the function to tell it how many are done, of how many."""
+    """A bar over runs done, only on a terminal; gives a function that takes the number done and the number of all."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -41,7 +41,7 @@ def counting(what: str) -> Iterator[Callable[[int, int], None]]:
 
 
 def show(session: Session, outcome: RunOutcome, out: Path) -> None:
-    """Print what became of a session."""
+    """Print the result of a session."""
     console = Console()
     speed = outcome.seconds / outcome.took if outcome.took > 0 else 0.0
     console.print(
@@ -61,7 +61,7 @@ def show(session: Session, outcome: RunOutcome, out: Path) -> None:
 
 
 def show_all(names: list[str], outcomes: list[RunOutcome], out: Path) -> None:
-    """Print what became of several sessions, a line each, and under it what was not met."""
+    """Print the results of several sessions: a line for each, and under it the expectations that were not met."""
     table = Table("", "session", "met", "simulated [s]", "took [s]", "events", box=None, pad_edge=False)
     for column in (2, 3, 4, 5):
         table.columns[column].justify = "right"
@@ -80,7 +80,7 @@ def show_all(names: list[str], outcomes: list[RunOutcome], out: Path) -> None:
 
 
 def show_seeds(found: list[SessionAtSeeds], out: Path) -> None:
-    """Print what became of sessions at many seeds: a line each, under it what was not met, and what was met most narrowly."""
+    """Print the results of sessions at many seeds: a line for each, under it the expectations not met, and the nearest one."""
     table = Table("", "session", "passed", box=None, pad_edge=False)
     for each in found:
         mark = "[bold red]FAIL[/bold red]" if each.failed else "[green]pass[/green]"

@@ -1,4 +1,4 @@
-"""Runs a session without a window: as fast as it goes, or in real time; the same either way, and the same for a seed."""
+"""Runs a session without a window, as fast as possible or in real time. The same seed gives the same events in both."""
 
 import time
 from collections.abc import Callable
@@ -39,28 +39,28 @@ Progress = Callable[[float], None]
 
 
 def silent(seconds: float) -> None:
-    """Tell nobody how far a run is."""
+    """A `Progress` that does nothing."""
 
 
 class Simulated(Protocol):
-    """What the runner needs of a simulation."""
+    """The part of a simulation that the runner needs."""
 
     def tick(self, wishes: Wishes) -> Decision:
         """One control tick."""
         ...
 
     def snapshot(self) -> Snapshot:
-        """A copy of the tick done last."""
+        """A copy of the last tick."""
         ...
 
     def glance(self) -> Scored:
-        """What scoring reads of the tick done last, good until the next."""
+        """Values of the last tick for scoring, valid until the next tick."""
         ...
 
 
 @dataclass(slots=True)
 class RunOutcome:
-    """What became of a session."""
+    """The result of a session."""
 
     modes: list[tuple[float, Mode]] = field(default_factory=list)  # time at which each mode began [s], the mode
     events: list[Event] = field(default_factory=list)
@@ -69,7 +69,7 @@ class RunOutcome:
     took: float = 0.0  # on the wall clock [s]
 
     def see(self, tick: int, decision: Decision) -> None:
-        """Take in one tick."""
+        """Add one tick."""
         self.events += decision.events
         if not self.modes or self.modes[-1][1] is not decision.mode:
             self.modes.append((tick * TICK, decision.mode))
@@ -81,27 +81,27 @@ class RunOutcome:
 
     @property
     def unmet(self) -> bool:
-        """Whether something was seen that an expectation forbids; what it waits for was there."""
+        """True if an expectation is `missed`."""
         return any(map(missed, self.verdicts))
 
 
 def missed(verdict: Verdict) -> bool:
-    """Something was seen that the expectation forbids; what it waits for was there."""
+    """True if the expectation failed because of what was seen. One whose moment or interval never came does not count."""
     return verdict.looked and not verdict.passed
 
 
 BROKEN = (ArithmeticError, np.linalg.LinAlgError, mujoco.FatalError)
-"""What a simulation breaks down with; it says nothing about the code."""
+"""Errors with which a simulation breaks down; they do not mean an error in the code."""
 
 MOMENT = 200
-"""Ticks after which what cannot be simulated has broken down, if nobody touches it."""
+"""A model that cannot be simulated breaks down within this many ticks, even if nobody touches it."""
 
 
 def simulate(prepared: Prepared) -> Simulation:
-    """A simulation of what a session or a configuration asks for.
+    """The simulation that a session or a configuration asks for.
 
     Raises:
-        BadInput: no model can be built of it.
+        BadInput: no model can be built.
     """
     try:
         return Simulation(prepared.arm, prepared.scenario, prepared.settings)
@@ -110,7 +110,7 @@ def simulate(prepared: Prepared) -> Simulation:
 
 
 def try_out(prepared: Prepared, ticks: int = MOMENT) -> None:
-    """Build what a file describes and let it stand for a moment, apart from whatever else runs.
+    """Simulate for a moment what a file describes, in a simulation of its own.
 
     Raises:
         BadInput: it cannot be simulated.
@@ -124,7 +124,7 @@ def try_out(prepared: Prepared, ticks: int = MOMENT) -> None:
 
 
 def try_tool(arm: Arm, tool: ToolModel, where: str) -> None:
-    """Let a tool stand on an arm of its own for a tick. Raises BadInput: it cannot be simulated."""
+    """Simulate a tool on the arm for a tick, in a simulation of its own. Raises BadInput: the tool cannot be simulated."""
     try_out(Prepared(arm, Scenario(tool=tool), Settings(), None, where), ticks=1)
 
 
@@ -144,7 +144,7 @@ def record(session: Session, prepared: Prepared, out: Path, *, realtime: bool = 
     """Run a session as `run`, and record it into `out`/log.mcap.
 
     Raises:
-        BadInput: a file cannot be written, or what is simulated breaks down; the recording ends there, with the cause.
+        BadInput: a file cannot be written, or the simulation breaks down; then the recording ends with the cause.
     """
     must_have_room(out)
     simulation = simulate(prepared)
@@ -178,17 +178,18 @@ def run(
     """Run a session to its end.
 
     Args:
-        session: what happens and what is expected.
+        session: time line and expectations.
         prepared: the same session, checked.
-        simulation: of `prepared`, at its start.
-        out: folder for events.jsonl; made when missing. None: no file.
+        simulation: simulation of `prepared`, at its start.
+        out: folder for events.jsonl; it is made if it is missing. None: no file.
         realtime: keep the pace of the wall clock.
-        progress: told the simulated seconds done, ten times a simulated second.
-        see: shown the decision of every tick that was done; a recorder, for example.
-        enough: with a verdict of which it says yes the run ends early, and has those verdicts alone that are known by then.
+        progress: called with the simulated seconds done, ten times in a simulated second.
+        see: called with the decision of every tick; a recorder, for example.
+        enough: called with each verdict that is known. When it returns True the run ends early, and has only the verdicts that
+            are known by then.
 
     Raises:
-        BadInput: the file cannot be written, or what is simulated breaks down.
+        BadInput: the file cannot be written, or the simulation breaks down.
     """
     joints = prepared.arm.chain.joints
     timeline = Timeline(session.timeline, joints, prepared.program)
@@ -237,7 +238,7 @@ def run(
 
 
 def _known(watches: list[Watch], tick: int, decision: Decision, glance: Callable[[], Scored]) -> list[Verdict]:
-    """The verdicts that wait for no later tick."""
+    """The verdicts that no later tick can change."""
     over = [each for each in watches if each.over(tick)]
     for each in over:
         if not each.settled() and each.last < tick:
@@ -246,7 +247,7 @@ def _known(watches: list[Watch], tick: int, decision: Decision, glance: Callable
 
 
 def _compare(watches: list[Watch], session: Session, prepared: Prepared) -> None:
-    """Hand each comparison what it measures in the same session with its other settings; those with the same share that run."""
+    """Give each comparison its value in the same session with its other settings. Equal settings share one run."""
     runs: list[list[ComparedWatch]] = []
     for each in watches:
         if isinstance(each, ComparedWatch):
@@ -258,7 +259,7 @@ def _compare(watches: list[Watch], session: Session, prepared: Prepared) -> None
 
 
 def _of_other_run(session: Session, prepared: Prepared, watched: list[ComparedWatch]) -> list[float]:
-    """What comparisons with the same other settings measure with them."""
+    """Values of comparisons that have the same other settings, in a run with these settings."""
     other = msgspec.structs.replace(session, settings={**session.settings, **watched[0].wanted.settings})
     again = prepare(other, prepared.where)
     simulation = simulate(again)

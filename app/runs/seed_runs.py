@@ -10,14 +10,14 @@ MAX_SEED = 2**31 - 1
 """The largest seed."""
 
 MAX_SEEDS = 1000
-"""So many runs of a session are one command's; more are a study."""
+"""One command runs a session at most this often. For more runs, use a study."""
 
 
 def seeds_in(text: str) -> list[int]:
-    """The seeds that a text means, in its order: numbers and ranges with both ends, "1-12" or "1,3,7-9".
+    """The seeds of a text, in its order: numbers and ranges with both ends, "1-12" or "1,3,7-9".
 
     Raises:
-        BadInput: it is no such text, names a seed twice, or too many.
+        BadInput: the text has another form, names a seed twice, or has too many seeds.
     """
     allowed = f"seeds and ranges of seeds, each once and at most {MAX_SEEDS} in all, such as 1-12 or 1,3,7-9"
     found: list[int] = []
@@ -44,7 +44,7 @@ class NotMet(NamedTuple):
 
 
 class NearestToBound(NamedTuple):
-    """The expectation that was met with the least to spare."""
+    """The met expectation that was nearest to its bound."""
 
     expected: str
     seed: int
@@ -53,13 +53,13 @@ class NearestToBound(NamedTuple):
 
 
 class SessionAtSeeds(NamedTuple):
-    """What became of a session at many seeds."""
+    """The result of a session at many seeds."""
 
     name: str
     runs: int
     failed: list[int]  # seeds at which an expectation was not met
     missed: list[NotMet]
-    nearest: NearestToBound | None  # None: no number was bounded, or none within its bounds
+    nearest: NearestToBound | None  # None: no expectation has a bound, or none was within its bounds
 
 
 def gathered(runs: Iterable[tuple[str, int, RunOutcome]]) -> list[SessionAtSeeds]:

@@ -1,4 +1,4 @@
-"""Makes ready what is compiled before anybody waits for it: a fresh installation compiles here, later starts only load."""
+"""Compiles all kernels before anybody waits for them: a fresh installation compiles here, later starts only load."""
 
 import os
 from pathlib import Path
@@ -26,10 +26,10 @@ from sim.simulation import Simulation
 
 
 def warm_up(arm: Arm | None = None) -> None:
-    """Go through all that a tick may do, without a page: half a minute in a fresh installation, a second later on.
+    """Run everything that a tick may do, without a page: half a minute in a fresh installation, a second later on.
 
     A kernel that is compiled at its first use would stop the arm for seconds, in the middle of a user's first free-drive. Kernels
-    are compiled for a number of joints: an `arm` that has others than the session's goes through it itself.
+    are compiled for a number of joints. So an `arm` with another number than the session's arm runs the session itself.
     """
     session = load(ASSETS / "warm-up.yaml", Session)
     prepared = prepare(session, "warm-up")
@@ -40,7 +40,7 @@ def warm_up(arm: Arm | None = None) -> None:
         run(session, prepared, simulation, None, see=lambda decision: recorder.see(simulation, decision))
     simulation.snapshot()
     _stream(simulation)
-    # What no session's step does: direct_torque.
+    # No step of a session uses direct_torque.
     none = (0.0,) * simulation.arm.n
     torque = DirectTorque(id=0, torque=none, viscous=none, coulomb=none)
     simulation.controller.feed_forward.commanded(torque, simulation.estimate, simulation.estimator.friction)
@@ -48,7 +48,7 @@ def warm_up(arm: Arm | None = None) -> None:
 
 
 def _on(arm: Arm, prepared: Prepared) -> Prepared:
-    """The same with another arm: from its home, a hundredth of a radian and a centimetre."""
+    """The same with another arm. Its program moves a joint by 0.01 rad, and the tool by 1 cm, from the arm's home."""
     home = arm.chain.home
     place = joint_frames(arm, home)[-1]
     x, y, z = place[:3, 3].tolist()
@@ -60,7 +60,7 @@ def _on(arm: Arm, prepared: Prepared) -> Prepared:
 
 
 def _stream(simulation: Simulation) -> None:
-    """A tick of a command that comes again and again."""
+    """A tick of a streamed command."""
     limits, dynamics, tcp, q = simulation.arm.limits, simulation.dynamics, simulation.tcp, simulation.estimate.q
     most = np.array(limits.speed), np.array(limits.acceleration), np.array(limits.ends).T.copy()
     now, up = Reference(q, np.zeros_like(q), np.zeros_like(q)), (0.0, 0.0, 0.01)

@@ -157,7 +157,7 @@ class Docks:
         self._upper.dock_left()
         self._upper.set_width(LEFT)
         self._lower.dock_below(self._upper)
-        quiet = (
+        quiet = (  # buttons that look quiet (app/web/widgets/style.py); this is no list of permissions
             self.panel.leave,
             self.panel.reset,
             self.lab.restart,

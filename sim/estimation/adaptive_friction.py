@@ -15,7 +15,7 @@ from sim.compiled.record import record
 Array = NDArray[np.float64]
 
 TERMS = 6
-"""Coulomb, saturating, viscous, load; then two that are no friction: error of the model's gain, bias of the model."""
+"""Coulomb, saturating, viscous, load friction; then two that are not friction: error of the model's gain, bias of the model."""
 
 KNEE = 0.25  # speed of the saturating term's half [rad/s]
 SIGN_SPEED = 0.01  # the sign of the speed is blurred over this [rad/s]
@@ -25,16 +25,16 @@ WALK = np.array([0.05, 0.05, 0.05, 0.02])  # relative random walk of the frictio
 GAIN_PRIOR, GAIN_WALK = 0.05, 0.002  # of the model's gain error
 BIAS_PRIOR, BIAS_WALK = 0.015, 0.006  # of its bias, relative to the torque limit (prior) and per sqrt(s)
 NOISE = 0.006  # of one measurement, relative to the torque limit
-CORRELATED = 60.0  # ticks over which errors of the measurement stay alike, so that so many count as one
-MISFIT = 0.05  # relative error that the terms' shapes leave even when all is learned
+CORRELATED = 60.0  # ticks over which measurement errors are correlated: so many measurements count as one
+MISFIT = 0.05  # relative error of the terms' shapes that remains when all is learned
 
 
 class Turning(NamedTuple):
-    """What the joints do in a tick, as they are learned from."""
+    """Motion and torques of the joints in a tick, from which friction is learned."""
 
     speed: Array  # of the motors (n,) [rad/s]
-    surplus: Array  # tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where tau_m is unknown; or by the deflection
-    tau_dyn: Array  # torque that was taken off, of the rigid model or of the deflection (n,) [N·m]
+    surplus: Array  # tau_m - J theta_dd - tau_dyn, or the same by the deflection (n,) [N·m]; NaN where tau_m is unknown
+    tau_dyn: Array  # torque that was subtracted, of the rigid model or of the deflection (n,) [N·m]
     tau_J: Array  # transmission torque (n,) [N·m], for the load term
 
 
@@ -48,16 +48,20 @@ def _fitted(speeds: tuple[float, ...], torques: tuple[tuple[float, ...], ...], s
 
 
 class AdaptiveFriction:
-    """A Kalman filter a joint over the terms of its friction, n joints.
+    """One Kalman filter for each joint over the terms of its friction, n joints.
 
-    Measured is what the motor spends beyond the rotor's inertia and the rigid model,
+    The measurement is the motor torque, minus the rotor's inertia, minus the rigid model,
         tau_m - J theta_dd - tau_dyn = f_in + f_out - tau_ext + (gain error) tau_dyn + bias,
-    with the model f = (c0 + c1 |v|/(|v| + knee) + c2 |v| + c3 |tau_J|) sign(v), all times the known fall with temperature.
-    Friction changes its sign with the speed, the model's errors do not: both directions tell them apart. Learning needs the
-    motor torque, a speed above the gate and no contact beyond what friction may be; without them the estimate stands and its
-    uncertainty grows. From one side alone output friction cannot be told from an external torque: its share is assumed as filed.
-    With `joint_control.friction_from` the deflection stands for the rigid model. It bears what touches the arm, too, so friction
-    is learned in contact; what is left is the input side's, and the whole is that over its share:
+    with the model f = (c0 + c1 |v|/(|v| + knee) + c2 |v| + c3 |tau_J|) sign(v). All terms but the last fall with temperature in a
+    known way. Friction changes its sign with the speed, the model's errors do not: motion in both directions tells them apart.
+
+    A joint learns when its motor torque is known, its speed is above `GATE`, and no contact torque is larger than friction could
+    be. Else the estimate stays, and its uncertainty grows. One side of the gear does not tell output friction from an external
+    torque, so the share of the output side is taken from the arm's file.
+
+    With `joint_control.friction_from` the deflection replaces the rigid model. The deflection also contains the torque of
+    contacts, so friction is learned in contact, too. What remains is the friction of the input side only; the friction of both
+    sides is this, divided by the share of the input side:
         (tau_m - J theta_dd - tau_deflection) / (1 - output share) = f_in + f_out + (gain error) tau_deflection + bias.
     """
 
@@ -99,20 +103,20 @@ class AdaptiveFriction:
 
     @property
     def breakaway(self) -> Array:
-        """What a standing joint may hold by friction (n,) [N·m]."""
+        """Torque that a standing joint may hold by friction (n,) [N·m]."""
         return self.terms[:, 0] * self.warmth
 
     def at(self, speed: Array, tau_J: Array) -> Array:
-        """Friction (n,) [N·m] of both sides, sliding at another speed and load, at the last temperature.
+        """Sliding friction (n,) [N·m] of both sides at a given speed and load, at the last temperature.
 
-        A speed of 0 counts as the slowest forwards.
+        A speed of 0 counts as a very slow forward motion.
         """
         total = np.empty_like(speed)
         slide(self.record, speed, tau_J, total)
         return total
 
     def parts(self, speed: Array, tau_J: Array) -> tuple[Array, Array]:
-        """Friction at a speed, each (n,) [N·m], 0 or more: what is there at any speed, and what grows with it."""
+        """Friction at a speed: the part that does not depend on the speed, and the part that grows with it, each (n,) [N·m]."""
         coulomb, viscous = np.empty_like(speed), np.empty_like(speed)
         _part(self.record, (speed, tau_J), coulomb, viscous)
         return coulomb, viscous
@@ -155,7 +159,7 @@ def _learn(own, turning, free) -> None:
     for i in range(speed.size):
         P, w = own.covariance[i], own.terms[i]
         for k in range(TERMS):
-            # What nobody measures may drift, but never beyond what was believed at first.
+            # The uncertainty of a term grows while nothing is learned, but at most to its first value.
             P[k, k] = min(P[k, k] + walk[i, k], max(ceiling[i, k], P[k, k]))
         if not free or abs(speed[i]) < GATE or math.isnan(surplus[i]):
             continue

@@ -26,10 +26,13 @@ from sim.sensing.sensors import Sample
 Array = NDArray[np.float64]
 
 TURN_BANDWIDTH = 150.0
-"""Of the angular acceleration that moves a measured acceleration to the load's centre [Hz]: it is there a tick after the
-force at the most, its noise at a load's usual distance within that of the accelerometer."""
+"""Bandwidth of the angular acceleration that moves a measured acceleration to the load's centre [Hz].
+
+It is so high that the angular acceleration comes at most one tick after the force, and so low that at a load's usual distance its
+noise is at most that of the accelerometer.
+"""
 MASS_TICKS = 50
-"""Ticks between two looks at the effective mass, which changes with the posture only."""
+"""Ticks between two computations of the effective mass, which changes only with the posture."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
 MASS, EFFECTIVE_MASS, LEVER, DRIVEN = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever", "driven"))
 LISTED = ("tool side", "arm side", "elbow", "forearm")
@@ -40,7 +43,7 @@ SINGULAR = 0.2
 
 
 class Feeling(NamedTuple):
-    """What the sources are made of in a tick, apart from the rigid model's motion."""
+    """Inputs of the sources in a tick, besides the rigid model's motion."""
 
     values: Array  # all measurements (3n + 18,)
     qd: Array  # (n,) [rad/s]
@@ -61,9 +64,9 @@ class ContactSources:
 
     Args:
         dynamics: the controller's model, already updated to this tick's posture when `read` is called.
-        elbow: index of the joint that the elbow is.
-        sensors: of the arm, with their ranges and their noise.
-        momentum: external torques of this tick.
+        elbow: index of the elbow joint.
+        sensors: sensors of the arm, with their ranges and their noise.
+        momentum: gives the external torques of this tick.
     """
 
     def __init__(self, dynamics: Dynamics, elbow: int, sensors: SensorNumbers, momentum: MomentumObserver) -> None:
@@ -73,15 +76,15 @@ class ContactSources:
         n = dynamics.recursion.origins.shape[0]
         self._record = record(
             turn=(3,),  # angular speed, a tick ago
-            change=(3,),  # of that
-            added=(3,),  # what the turning added to the acceleration
+            change=(3,),  # angular acceleration, smoothed
+            added=(3,),  # acceleration that the turning added a tick ago
             smoothing=(),
             com=(3,),  # of the load
             gravity=(3,),
             reach=(2,),
             before=(2, 3, n),  # Jacobians of the two points on links, a tick ago
-            felt=(n,),  # what the joints feel and the flange sensor does not
-            joints="2i8",  # whose origins are elbow and end of the forearm
+            felt=(n,),  # torques that the joints feel and the flange sensor does not
+            joints="2i8",  # the joints at the elbow and at the end of the forearm
             numbers=(len(LISTED) * WIDTH + n * (3 + 3 * CAUSES),),  # all that `ContactSignals` holds
         )
         own = self._own = self._record[0]
@@ -103,7 +106,10 @@ class ContactSources:
         self._out[:2, MASS], self._out[:2, LEVER] = load.mass, np.linalg.norm(load.com)
 
     def set_zero(self, zero: Array) -> None:
-        """So much (6,) is subtracted from the sensor's values, in F [N, N·m]: it may saturate at a force that seems less."""
+        """`zero` (6,) is subtracted from the sensor's values, in F [N, N·m].
+
+        So the sensor may saturate although the value shown is within its range.
+        """
         self._own["reach"] = self._range - [np.abs(zero[:3]).max(), np.abs(zero[3:]).max()]
         self._momentum.forget_zero()
 
@@ -115,7 +121,7 @@ class ContactSources:
             estimate: this tick's estimate.
             jacobian: of the flange (6, n), axes of B.
             use: which sources are on; the others give None.
-            looks: somebody looks for contacts; else there is a gap, and what was before it counts no more.
+            looks: somebody looks for contacts; else there is a gap, and earlier samples no longer count.
         """
         if not looks:
             if estimate.signals is not NOT_READ:
@@ -191,9 +197,9 @@ def _read(sources, models, felt, watched) -> bool:
 def _to_load(own, arm_side, tool_side):
     """Acceleration (3,) of the load's centre against the flange [m/s²].
 
-    Both gyros feel the same turning, for the flange sensor gives way along its axes and does not turn: their mean has so little
-    noise that its difference needs little smoothing. With more, the load's turning came so much later than its force that an
-    arm which vibrates at 60 Hz laid the two against each other like a contact.
+    Both gyros feel the same turning, because the flange sensor gives way along its axes and does not turn. Their mean has so
+    little noise that its difference needs little smoothing. More smoothing would delay the load's turning against its force, so
+    that an arm which vibrates at 60 Hz looks like a contact.
     """
     before, change, smoothing, com = own.turn, own.change, own.smoothing, own.com
     turn, moved = np.empty(3), np.empty(3)
@@ -215,7 +221,7 @@ def _to_load(own, arm_side, tool_side):
 
 @kernel
 def _transfer(own, R, felt, out) -> None:
-    """Force, specific force at the load's centre, gravity, and the change of what the turning adds, each (3,) in F."""
+    """Force, specific force at the load's centre, gravity, and change of the acceleration by turning, each (3,) in F."""
     wrench, acceleration, moved = felt
     before, gravity = own.added, own.gravity
     for k in range(3):
@@ -235,7 +241,7 @@ def _feel_behind(own, momentum, errors) -> None:
 
 @kernel
 def _keep(out, momentum, errors) -> None:
-    """What is known of the torques of contacts behind the sensor, in the order of `ContactSignals`."""
+    """Torques of contacts behind the sensor, with causes and errors, in the order of `ContactSignals`."""
     n, m = errors.causes.shape
     for i in range(n):
         out[i], out[n + n * m + i], out[2 * n + n * m + i] = momentum.residual[i], momentum.held[i], momentum.doubt[i]
@@ -249,7 +255,7 @@ def _keep(out, momentum, errors) -> None:
 def _derive(own, rigid, made, which) -> None:
     """Force of a link on the outside, specific force at its point, and gravity, each (3,) in B, into a row of signals.
 
-    The force is the smallest one that explains what the joints that can move the point feel of contacts behind the sensor: with
+    The force is the smallest that explains the torques of contacts behind the sensor, at the joints that can move the point: with
     J^T F = tau, F = (J J^T + d²)^-1 J tau.
     """
     (felt, out), (link, went_on) = made, which

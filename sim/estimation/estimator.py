@@ -37,7 +37,7 @@ SHIPPED = JointControl()
 _DEFLECTION = FrictionFrom.DEFLECTION  # looked up in every tick
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
-BENDING_BANDWIDTH = 5.0  # of a deflection that is made up [Hz]
+BENDING_BANDWIDTH = 5.0  # of a deflection that replaces a lost angle [Hz]
 
 
 class Estimator:
@@ -45,7 +45,7 @@ class Estimator:
 
     Args:
         arm: the arm's numbers.
-        constants: those that the controller uses.
+        constants: the joint constants that the controller uses.
         dynamics: the controller's rigid model, which holds the configured payload.
         tcp: tool centre point in F (3,) [m].
     """
@@ -68,7 +68,7 @@ class Estimator:
         self._use: JointControl | None = None
         self._ways = np.ones((len(WAYS), n), dtype=bool)
         self._stiction, self._deflection = own["stiction"], own["deflection"]
-        self._by_deflection = np.zeros(n, dtype=bool)  # whose friction is obtained from it
+        self._by_deflection = np.zeros(n, dtype=bool)  # joints whose friction comes from the deflection
         self._torques = self._record, self.friction.record, self.transmission.record
         self._relaxed = False  # at first the hysteresis spring is taken for relaxed
         own["gains"] = tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)
@@ -78,8 +78,8 @@ class Estimator:
         self._able = np.ones((3, n), dtype=bool)  # motor angle, output angle, current
         self._lost: tuple[tuple[str, int], ...] = ()
         self._smooth_bending = 1.0 - math.exp(-2.0 * math.pi * BENDING_BANDWIDTH * TICK)
-        self._bending = np.zeros(n)  # load that bends the spring where an angle is out [N·m]
-        self._bend = np.zeros(n)  # deflection beyond that of the believed stiffness, where an angle is out [rad]
+        self._bending = np.zeros(n)  # torque that bends the spring of a joint with a lost angle [N·m]
+        self._bend = np.zeros(n)  # its deflection that the believed stiffness does not explain [rad]
         self.started, self._free = False, False  # `_free`: free-drive was on in the last tick
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
@@ -94,7 +94,7 @@ class Estimator:
         self.tick = 0
 
     def set_load(self, load: Body, payload: Body) -> None:
-        """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
+        """Take `load` (in F) as everything beyond the flange; the `payload`, a part of the load, may get lost."""
         self.forces.set_load(load)
         self.whose_force.bank.set_load(load, payload)
 
@@ -111,14 +111,21 @@ class Estimator:
         bias: tuple[float, ...] | None = None,
         unsure: float = 0.0,
     ) -> Estimate:
-        """Take one tick's measurements; `move_done` and the like as in `Estimate`, `use` says what the torques stand on,
-        `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
-        deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
-        as known, and the gears are not compared with the rigid model. `bias` is that of the flange sensor in free-drive, in axes
-        of F [N, N·m], None otherwise; `unsure` is the standard deviation of each of its axes that is beside its noise [N];
-        without limit, the sensor is not used: the joints alone tell whose force it is.
+        """Take the measurements of one tick.
 
-        Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
+        If joint measurements are not valid, the last good estimate stays, marked as invalid.
+
+        Args:
+            sample: this tick's measurements.
+            move_done, move_refused, move_wall: as in `Estimate`.
+            use: says which sources the torques come from.
+            answered: motion that was wanted at the time of the measurement, or None. With a motion the filters follow the
+                deviation from it, so they do not lag behind a planned acceleration.
+            learn: False while a hand may move the arm: friction stays as known, and the gears are not compared with the rigid
+                model.
+            bias: bias of the flange sensor in free-drive, in axes of F [N, N·m]; None outside free-drive.
+            unsure: standard deviation of each axis of the bias, without the sensor's noise [N]. If it is infinite, the sensor is
+                not used, and only the joints tell whose force it is.
         """
         dynamics = self._dynamics
         self.tick += 1
@@ -128,7 +135,7 @@ class Estimator:
             if self._lost and sample.joints_valid:
                 self._back(sample)
             if not self.started:
-                # Also after an outage: the way the arm went in it must not count as speed.
+                # Also after an outage: the distance that the arm moved meanwhile must not count as speed.
                 theta[:], q[:] = 0.0, 0.0
                 theta[0], q[0] = angles[0], angles[1]
                 self._wanted = None
@@ -230,18 +237,18 @@ class Estimator:
             self._use = use
             both, motor_known = self._able[0] & self._able[1], self._able[0] & self._able[2]
             deflection, motor_side = use.from_deflection & both, use.from_motor & motor_known
-            # A joint that has lost the ways that are wanted of it goes on with the rigid model.
+            # A joint uses the rigid model if it can no longer use any of the ways that `use` asks for.
             lost = ~(deflection | motor_side) & (use.from_deflection or use.from_motor)
             self._ways[:] = [use.from_dynamics | ~both | lost, deflection, motor_side]
             self._by_deflection[:] = both & motor_known & (use.from_deflection and use.friction_from is _DEFLECTION)
         known, adapts = (self._ways, self._able, self._by_deflection), learn and self.started and use.adaptive
         moving: bool = balance(self._torques, (self._dynamics.recursion.torque, sample.temperature), known, (learn, adapts))
-        if self._lost:  # what a way cannot tell says nothing against the others
+        if self._lost:  # a way without a value takes the fused value, so that it does not seem to contradict the others
             np.copyto(self.transmission.ways, self.transmission.fused, where=~self._ways)
         return moving
 
     def _made_up(self, sample: Sample) -> tuple[Array, Array, Array] | None:
-        """Angles and currents where some are out: each angle from the other, through the spring; None if a joint has neither."""
+        """Angles and currents if some are lost: each angle from the other, through the spring; None if a joint has neither."""
         able = np.isfinite(np.stack([sample.theta, sample.q, sample.current]))
         if not (able[0] | able[1]).all():
             self._lost = _names(able)
@@ -251,10 +258,10 @@ class Estimator:
             self._bending = fused.copy()
             bent = self._theta[0] - self._q[0] if self.started else np.zeros_like(fused)
             fresh = (self._able[0] & self._able[1]) & self.started
-            # What the spring's stiffness does not explain now, it will not explain later: no angle jumps.
+            # The part of the deflection that the stiffness does not explain now is kept, so that no angle jumps.
             self._bend = np.where(fresh, bent - self._compliance * fused, self._bend)
             self._able, self._lost, self._use = able, _names(able), None
-        # Slowly: the torque is itself made of these angles.
+        # Slowly, because the torque itself is computed from these angles.
         self._bending += self._smooth_bending * (fused - self._bending)
         deflection = self._bend + self._compliance * self._bending
         theta = np.where(able[0], sample.theta, sample.q + deflection)
@@ -263,7 +270,7 @@ class Estimator:
         return theta, q, np.where(able[2], sample.current, spent)
 
     def _back(self, sample: Sample) -> None:
-        """All sensors are there again: angles that were made up jump to what is measured, without any speed."""
+        """All sensors work again: replaced angles jump to the measured ones, and this makes no speed."""
         self._theta[0], self._q[0] = sample.theta, sample.q
         self._able, self._lost, self._use = np.ones_like(self._able), (), None
 

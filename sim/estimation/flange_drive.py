@@ -1,11 +1,13 @@
 """Who moves whom at the flange: the arm its load, or the load the arm (CD-0).
 
-The flange exerts the wrench w on what it carries, so the arm's side of the flange feels -w. Where nothing else has changed, that
-side accelerates by -M^-1 w, with the mass matrix M of the arm at the flange, which is positive definite: the product of the
-changes of w and of the acceleration, force with linear and torque with angular, is negative. So it is for every contact of what
-is carried, wherever it acts. A push on a link accelerates the arm's side, and the load follows: w is then the mass matrix of the
-load times that acceleration, and the product is positive. It takes all six components, for one point: a torque may move the
-flange along the force.
+The flange exerts the wrench w on its load, so the arm's side of the flange feels -w. If nothing else changes, that side
+accelerates by -M^-1 w, where M is the mass matrix of the arm at the flange. M is positive definite. So the product of the change
+of w and the change of the acceleration (force times linear, torque times angular) is negative. This holds for every contact of
+the load, wherever it acts.
+
+A push on a link accelerates the arm's side, and the load follows. Then w is the mass matrix of the load times that acceleration,
+and the product is positive. The product needs all six components at one point, because a torque, too, may move the flange in the
+direction of the force.
 """
 
 import numpy as np
@@ -18,15 +20,15 @@ from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
 
 NOISES = 1.0 + 1.0 / OLDER
-"""Variance of a difference from the mean of `OLDER` samples, over that of a sample."""
+"""Variance of the difference between a sample and the mean of `OLDER` samples, divided by the variance of a sample."""
 
 
 def flange_drive(sensors: SensorNumbers, smoothing: float) -> Record:
-    """What is kept of the last samples at the flange, none at first.
+    """Record of the last samples at the flange, still empty.
 
     Args:
-        sensors: of the arm; their noise is that of its file.
-        smoothing: share by which the angular acceleration, a difference of the mean of two gyros, follows in a tick.
+        sensors: sensors of the arm, with the noise of its file.
+        smoothing: share by which the angular acceleration follows in a tick. It is the smoothed change of the mean of two gyros.
     """
     kept = record(kept=(OLDER, 12), noise=(12,), last=(3,), count="i8")
     noise = kept[0]["noise"]
@@ -39,13 +41,14 @@ def flange_drive(sensors: SensorNumbers, smoothing: float) -> Record:
 
 @kernel
 def driven(own, wrench, acceleration, turning) -> float:
-    """How far the arm moves its load, in standard deviations of the noise; below zero the load moves the arm.
+    """How surely the arm moves its load, in standard deviations of the noise; below zero the load moves the arm.
 
-    The changes are those from the mean of the `OLDER` samples before. The angular acceleration is known up to `LATE` ticks late:
-    what counts is the lesser of both, as it is known and as it would be if it went on changing. 0 as long as not enough is known.
+    Changes are relative to the mean of the last `OLDER` samples. The angular acceleration is known up to `LATE` ticks late. So
+    the product is taken twice, with the angular acceleration as known and with the one extrapolated by `LATE` ticks. The smaller
+    result counts. It is 0 until `OLDER` samples are known.
 
     Args:
-        own: record of `flange_drive`; takes this sample, too.
+        own: record of `flange_drive`; this sample is added to it.
         wrench: (6,) of the flange on its load, in F [N, N·m].
         acceleration: (3,) specific force of the arm's side at the flange, in F [m/s²].
         turning: (3,) angular acceleration, in F [rad/s²].

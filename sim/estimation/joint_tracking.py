@@ -1,4 +1,4 @@
-"""Angles of the joints, tracked: speeds and accelerations, and what the torques of motor and spring are (AF-3)."""
+"""Tracking of joint angles: speeds and accelerations, and the torques of motor and spring (AF-3)."""
 
 import math
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from sim.motion.moves import Reference
 Array = NDArray[np.float64]
 
 SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
-TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
+TORQUE_BANDWIDTH = 20.0  # of the output angle's filter; its accelerations enter torque estimates [Hz]
 
 
 def tracking_gains(bandwidth: float) -> tuple[float, float, float]:
@@ -37,7 +37,7 @@ class Angles(NamedTuple):
 
 
 def joint_record(n: int) -> Record:
-    """What is known of n joints: their constants, their state, and the torques of a tick; still all zero."""
+    """Record of n joints: their constants, their state, and the torques of a tick; all still zero."""
     return record(
         torque_constant=(n,),  # of the current, referred to the output [N·m/A]
         stiffness=(n,),
@@ -50,22 +50,25 @@ def joint_record(n: int) -> Record:
         theta=(3, n),  # position, speed, acceleration
         q=(3, n),
         rest=(n,),  # deflection at which the hysteresis spring is relaxed
-        most=(n,),  # current that a motor may have [A]
-        current=(n,),  # measured, as a share of it
+        most=(n,),  # largest current of a motor [A]
+        current=(n,),  # measured current, divided by the largest
         spin=(),  # kinetic energy of the rotors [J]
         tau_m=(n,),
         deflection=(n,),  # torque that the deflection bears
         surplus=(n,),
         bending=(n,),  # torque that the deflection bears, with what was learned of the spring
-        rubbing=(n,),  # friction of both sides as the deflection leaves it
+        rubbing=(n,),  # friction of both sides, found from the deflection
         stiction=(n,),
     )
 
 
 @kernel
 def surplus(joints, tau_dyn, friction, transmission) -> None:
-    """What the motor spends beyond the rotor's inertia and the rigid model; and, the other way, what friction takes of it by the
-    deflection: the gear bends under all that is behind it, whatever touches the arm, so the rest rubs on the input side (AF-2).
+    """Compute `surplus` and `rubbing` of each joint (AF-2).
+
+    `surplus` is the motor torque, minus the rotor's inertia, minus the rigid model. `rubbing` is the friction of both sides,
+    found from the deflection: the gear bends under everything behind it, contacts included. So the rest of the motor torque is
+    friction of the input side.
     """
     own, rubs, springs = joints[0], friction[0], transmission[0]
     for i in range(own.surplus.size):
@@ -77,7 +80,7 @@ def surplus(joints, tau_dyn, friction, transmission) -> None:
 
 @kernel
 def sides(joints, tau_dyn, friction, transmission) -> bool:
-    """Transmission torque seen from the links and from the motor, what stiction may hide, and whether any joint moves."""
+    """Compute the transmission torque from links and from motors, and what stiction may hold. Returns whether a joint moves."""
     own, rubs, ways = joints[0], friction[0], transmission[0].ways
     share, total = rubs.output_share, rubs.total
     moving = False
@@ -92,7 +95,7 @@ def sides(joints, tau_dyn, friction, transmission) -> bool:
 
 @kernel
 def plan(joints, before, now) -> None:
-    """Add to both states what the plan does in this tick beyond constant acceleration."""
+    """Add to both states the difference between the plan and constant acceleration in this tick."""
     before = Reference(*before)
     now = Reference(*now)
     theta, q = joints[0].theta, joints[0].q
@@ -100,7 +103,7 @@ def plan(joints, before, now) -> None:
         jump = now.qdd[i] - before.qdd[i]
         gain = now.qd[i] - before.qd[i] - TICK * before.qdd[i]
         way = now.q[i] - before.q[i] - TICK * before.qd[i] - 0.5 * TICK * TICK * before.qdd[i]
-        # The filters' prediction is to end there: it adds TICK·gain and the like from what is put in here.
+        # The filters' next prediction must arrive at the plan. It adds the products with TICK itself, so they are taken off here.
         theta[2, i] += jump
         theta[1, i] += gain - TICK * jump
         theta[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
@@ -124,7 +127,7 @@ def _track(measured, gains, state, i) -> None:
 def follow(joints, angles) -> None:
     """Track both angles; motor torque from the current, transmission torque from the deflection (AF-3).
 
-    The transmission is a stiffening spring and, beside it, a spring that slips at its yield: the hysteresis.
+    The transmission is a stiffening spring, in parallel with a spring that slips at its yield: the hysteresis.
     """
     angles = Angles(*angles)
     own = joints[0]
@@ -145,5 +148,5 @@ def follow(joints, angles) -> None:
 
 @kernel
 def unheld(torque, held):
-    """What of a torque friction at rest cannot hold, which holds `held` at most either way [N·m]."""
+    """The part of a torque beyond `held`, the most that friction at rest holds in either direction [N·m]."""
     return np.copysign(max(abs(torque) - held, 0.0), torque)

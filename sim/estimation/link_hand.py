@@ -1,33 +1,40 @@
-"""A hand on a link, which the flange sensor does not feel: what the joints feel of it in free-drive, beyond their errors (FD-19).
+"""A hand on a link that the flange sensor does not feel, as joints feel it in free-drive (FD-19).
 
-The momentum observer tells the torques of contacts behind the sensor. What gears, encoders and the sensor's zero put into them is
-a sum of known causes with shares that are known so well as was learned (`sim.estimation.torque_errors`). Since free-drive began
-the torque of a joint has changed by
+The momentum observer gives the torques of contacts behind the sensor. Gears, encoders and the
+sensor's zero add errors to these torques. Each error is a known cause times a share; the share is
+learned, with an uncertainty (`sim.estimation.torque_errors`). Since free-drive began the torque of
+a joint has changed by
 
-    change = hand + sum of shares x change of causes + sum of zero's change x its levers + what the model leaves,
+    change = hand + sum of shares x change of causes + sum of zero's change x its levers + rest,
 
-so its error has the variance of these shares with the change of their causes, of the zero's walk since entry, and of the rest. A
-hand is there where a joint's change is more than `CONTACT` deviations of that. Its force is made of what is beyond alone: that
-error stays what it is for as long as the arm is there, and would lead it. What was felt at entry is no hand's.
+so its error has the variance of these shares times the change of their causes, of the zero's walk
+since entry, and of the rest. A joint whose change is more than `CONTACT` deviations of this error
+feels a hand. Only the part beyond the error makes the hand's force: the error lasts as long as the
+arm stays in that posture, and would push the arm. A torque that was there at entry is not a hand's.
 
-Far from there little of that force is left. But a hand comes faster than the arm's posture changes: a change against what was
-felt lately, while nothing was a hand's, is told in the same way, and makes a force as a whole, of the joints that feel it for
-sure. An arm at rest is followed, too, as long as the change since entry may be errors: so a hand that comes too slowly to be seen
-is forgotten once it has gone. But what was felt lately may have been a hand that rested on the arm, and would seem to pull the
-other way once it has gone. So a change is a hand's only if it is one against what was felt before, too, which follows so slowly
-that no hand holds still for as long.
+Far from the posture at entry the error is large, and little of the force remains. But a hand comes
+faster than the posture changes. So the torque is also compared with a quick reference: the torque
+of a short while ago, when no hand was felt. At joints that surely feel such a change, all of the
+change counts as force. While the arm rests, and the change since entry may be an error, the quick
+reference follows the torque. So a hand that came too slowly to be noticed is forgotten after it has
+gone.
 
-Yet a hand that holds the arm in its pauses, for seconds, is in both. Once it has let go, both tell its torque the other way
-round, as that of a new hand, which would be helped as a whole. So the longer a joint may have been held, the less of a change is
-certain: at last only what no error explains.
+But a hand may have rested on the arm. When this hand goes, the change looks like a pull to the
+other side. So a change counts as a hand only if there is also a change against a slow reference,
+which follows more slowly than any hand can hold still. A hand that holds the arm still for seconds
+is nevertheless in both references. When it lets go, both show a torque of the opposite sign, like a
+new hand, and the arm would help with all of it. So the longer a joint may have been held, the
+smaller is the certain part of a change. In the end it is only the part that no error explains.
 
-On an arm that stands for longer, gears, friction and posture change nothing: within a second the torques keep within some
-hundredths of a newton metre. So whoever touches a link is told by a far smaller change. As soon as a joint moves its friction is
-another one, so nothing helps a motion that follows. But a joint whose torque changed by more than what the model leaves on a
-moving arm was touched: what it feels is the hand's for a while, and pays for the motion.
+On an arm that stands longer, gears, friction and posture do not change: within a second the torques
+change by hundredths of a newton metre. So a far smaller change shows a hand on a link. When a joint
+begins to move, its friction changes, so this small change gives no help to the motion. But a joint
+was touched if its torque changed by more than the model's error on a moving arm. For a while its
+torque then counts as the hand's, and explains the motion.
 
-What was felt lately tells better than entry. What a joint felt of a hand a moment ago may still be one's that turns round: it is
-believed whichever of both says that it leads the arm.
+The comparison with the quick reference is more exact than the one with entry. But a hand that was
+felt a moment ago may only change its direction. So the comparison is believed in which the hand
+drives the arm more.
 """
 
 import numpy as np
@@ -48,42 +55,45 @@ from sim.rigid_body.newton_euler import NewtonEuler
 
 Array = NDArray[np.float64]
 
-ENTRY, LATELY, BEFORE = range(3)
+ENTRY, LATELY, BEFORE = range(3)  # references: at entry, quick, slow
 
 LONG = ticks(STEADY)
-"""Ticks of the time constant with which what was felt before follows."""
+"""Time constant of the slow reference [ticks]."""
 
 SETTLED = round(1.0 / FOLLOW)
-"""Ticks after which an arm has stood for long enough: the time constant of what was felt lately."""
+"""Ticks after which an arm has stood long enough: the time constant of the quick reference."""
 
 
 class LinkHand:
     """One tick at a time, in free-drive with the flange sensor.
 
     Attributes:
-        torque: of a hand on a link (n,) [N·m]; zeros where errors may be all that is felt, and was lately.
-        certain: what of it a hand makes for certain in this tick (n,) [N·m]: of a change against what was felt lately the whole,
-            or what no error explains if a hand may have been felt then; of the change since entry what no error explains.
-        force: the force (3,) at the flange, in B, that would make these torques best [N].
-        touch: the same of what the joints of a standing arm feel, beside what they felt lately [N].
+        torque: of a hand on a link (n,) [N·m]; 0 where errors explain all that is felt and was felt
+            a moment ago.
+        certain: the part of it that is surely a hand's (n,) [N·m]. Of a change against the quick
+            reference this is all, or less the longer a hand may have been there before. Of the
+            change since entry it is what no error explains.
+        force: the force (3,) at the flange, in B, that explains these torques best [N].
+        touch: the same for the change of a standing arm's torques from those of a short while ago
+            [N].
 
     Args:
-        arm: its number of joints.
-        rigid: the controller's rigid model, which has been run in the tick before `update`.
-        momentum: updated in the same tick before.
+        arm: gives the number of joints.
+        rigid: the controller's rigid model, run in the same tick before `update`.
+        momentum: its update comes earlier in the same tick.
     """
 
     def __init__(self, arm: Arm, rigid: NewtonEuler, momentum: MomentumObserver) -> None:
         self._rigid, self._momentum = rigid.record, momentum
         self._known = momentum.record, momentum.errors.record
         self._record = record(
-            felt=(3, arm.n, 1 + CAUSES),  # torque and causes, smoothed, at entry, lately and before
+            felt=(3, arm.n, 1 + CAUSES),  # the three references: torque and causes, smoothed
             bias=(3, ZERO),  # of the flange sensor then, axes of F [N, N·m]
-            ticks="3i8",  # since then
-            lasts=f"{arm.n}i8",  # ticks for which who was felt by a joint may be there still
-            left=(3, arm.n),  # what errors do not explain as far as they are known, against each of these [N·m]
-            sure=(3, arm.n),  # what of it they do not explain at all
-            held=(arm.n,),  # share of what was felt before in which who is felt by a joint may have been there
+            ticks="3i8",  # since each of the references
+            lasts=f"{arm.n}i8",  # ticks for which the hand that a joint felt may still be there
+            left=(3, arm.n),  # change against each reference, minus the known errors [N·m]
+            sure=(3, arm.n),  # the part of it beyond the possible error
+            held=(arm.n,),  # share of the slow reference's time in which a hand may have been there
             torque=(arm.n,),
             certain=(arm.n,),
             force=(3,),
@@ -95,7 +105,7 @@ class LinkHand:
         self.torque, self.force, self.certain, self.touch = own["torque"], own["force"], own["certain"], own["touch"]
 
     def forget(self) -> None:
-        """Free-drive is to begin, or the sensor is out: nothing is felt."""
+        """Free-drive will begin, or the sensor is lost: nothing is felt."""
         self._own["ticks"], self._own["lasts"], self._own["stood"] = 0, 0, 0
         self.torque[:], self.certain[:], self.force[:], self.touch[:], self._own["held"] = 0.0, 0.0, 0.0, 0.0, 0.0
 
@@ -105,7 +115,7 @@ class LinkHand:
         Args:
             bias: of the flange sensor (6,), axes of F [N, N·m].
             qd: joint speeds (n,) [rad/s].
-            by_deflection: whose torque comes from the deflection (n,); else from the motor.
+            by_deflection: joints whose torque comes from the deflection (n,), not from the motor.
         """
         if self._momentum.ready:
             _update(self._record, self._known, self._rigid, (bias, qd, by_deflection))
@@ -158,7 +168,7 @@ def _update(memory, known, model, told) -> None:
 
 @kernel
 def _certain(own, i) -> float:
-    """What of a joint's change a hand makes for certain [N·m]: the whole; if it may have been held what no error explains."""
+    """Certain part of a joint's change [N·m]: all; if it may have been held, what no error explains."""
     whole = own.left[LATELY, i]
     least = min(abs(own.sure[LATELY, i]), abs(own.sure[BEFORE, i]))
     return np.copysign(abs(whole) - own.held[i] * (abs(whole) - least), whole)
@@ -166,7 +176,7 @@ def _certain(own, i) -> float:
 
 @kernel
 def _touch(own, jacobian, known, told) -> None:
-    """Who touches an arm that stands; a joint whose torque comes from the motor does not tell, its friction may bear as much."""
+    """Touch of a standing arm. A torque from the motor does not count: friction may be as large."""
     felt, floor = known
     by_deflection, stands = told
     own.stood = min(own.stood + 1, SETTLED) if stands else 0
@@ -197,7 +207,7 @@ def _follow(felt, now, share) -> None:
 
 @kernel
 def powers(qd, tau_hand, tau_certain, friction) -> tuple[float, float, float]:
-    """Power of a hand, what of it is certain, and what friction takes [W]: of (n,) [rad/s, N·m]."""
+    """Power [W] of a hand, its certain part, and the power of friction, from (n,) [rad/s, N·m]."""
     return _power(tau_hand, qd), _power(tau_certain, qd), _power(friction, qd)
 
 
@@ -211,12 +221,12 @@ def _power(torque, qd):
 
 @kernel
 def _feel(own, known, told, when) -> bool:
-    """Whether a hand is felt against what was felt then: what is `left` of the change, and what of that is `sure`."""
+    """Compute `left` and `sure` of the change against a reference. Returns whether a hand is felt."""
     momentum, errors, felt = known[0][0], known[1][0], own.felt[when]
     bias, by_deflection = told
     found, change, drifts, walked = False, np.empty(1 + CAUSES), np.empty(ZERO), np.empty(ZERO)
     for k in range(ZERO):
-        drifts[k] = bias[k] - own.bias[when, k]  # the sensor tells the opposite of its bias
+        drifts[k] = bias[k] - own.bias[when, k]  # the torques contain the opposite of the bias
         walked[k] = min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
     for i in range(own.torque.size):
         for k in range(1 + CAUSES):
@@ -229,7 +239,7 @@ def _feel(own, known, told, when) -> bool:
             change[0] += drifts[k] * lever
             rest += lever * lever * walked[k]
         own.left[when, i] = left = left_over(errors.shares[i], change[0], change[1:])
-        sure = unheld(left, 2.0 * momentum.held[i])  # it may have held as much the other way then
+        sure = unheld(left, 2.0 * momentum.held[i])  # friction may have held as much the other way
         own.sure[when, i] = beyond(errors, i, (sure, change[1:]), (rest, CONTACT))
         found = found or own.sure[when, i] != 0.0
     return found

@@ -1,10 +1,11 @@
 """External torques of joints by the generalised momentum: an observer without accelerations.
 
-With the links' momentum p = M(q) q' and what is known to drive it, p' = tau_J - f_out + C^T q' - g - J^T w + tau_ext, the
-residual r = K (p - integral(tau_J - f_out + C^T q' - g - J^T w + r) dt) follows tau_ext with a first-order lag of 1 / K. The
-torque tau_J is that behind the gear, from its deflection, so the friction of motor and gear does not enter; w is what the flange
-sensor feels of all that it carries, so what is carried need not be known. Arms swing on their gears: an acceleration comes out of
-a filter later than the torque that it needs, but here both go through the same filter.
+The links' momentum p = M(q) q' changes by p' = tau_J - f_out + C^T q' - g - J^T w + tau_ext. The
+residual r = K (p - integral(tau_J - f_out + C^T q' - g - J^T w + r) dt) follows tau_ext with a
+first-order lag of 1 / K. The torque tau_J is that behind the gear, from its deflection, so the
+friction of motor and gear does not enter. The wrench w of the flange sensor contains all of the
+load, so the load need not be known. Arms swing on their gears. An acceleration comes out of a
+filter later than its torque, but here both go through the same filter.
 
 Source: De Luca, Albu-Schaeffer, Haddadin, Hirzinger, Collision Detection and Safe Reaction with the DLR-III Lightweight
 Manipulator Arm, IROS 2006; Haddadin, De Luca, Albu-Schaeffer, Robot Collisions: A Survey on Detection, Isolation, and
@@ -29,46 +30,50 @@ from sim.rigid_body.newton_euler import about, cross, turned, turned_back
 Array = NDArray[np.float64]
 
 BANDWIDTH = 40.0
-"""Of the observer and of the filter behind it [Hz]: above the swing of an arm on its gears (10 to 25 Hz), and so low that the
-output encoder's noise, which is differentiated twice, makes a newton metre of it at the most."""
+"""Bandwidth of the observer and of the filter behind it [Hz]: above the swing of an arm on its
+gears (10 to 25 Hz), and so low that the twice differentiated noise of the output encoder makes at
+most a newton metre."""
 GAIN = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
 READY = 25
-"""Ticks after which the observer has forgotten how it began: a dozen of its time constants."""
+"""Ticks after which the start of the observer has no effect: a dozen of its time constants."""
 FLOOR = 0.004
-"""Deviation of what the model leaves within tenths of a second, relative to the torque limit."""
+"""Deviation of the model's error within tenths of a second, relative to the torque limit."""
 
 
 class Driven(NamedTuple):
-    """What is known of a tick beyond the rigid model, n joints."""
+    """Inputs of the observer in a tick, besides the rigid model, n joints."""
 
     q: Array  # (n,) measured [rad]
-    deflection: Array  # (n,) torque that it bears as believed [N·m]
+    deflection: Array  # (n,) torque of the deflection, with the believed stiffness [N·m]
     motor: Array  # (n,) transmission torque by the motor's current [N·m]
     friction: Array  # (n,) of both sides [N·m]
     friction_deviation: Array  # (n,) [N·m]
-    stiction: Array  # (n,) what a standing joint may hold as well [N·m]
+    stiction: Array  # (n,) torque that a standing joint may hold in addition [N·m]
     use: NDArray[np.bool_]  # (3, n) which of `transmission_torque.WAYS` may be used
-    wrench: Array  # (6,) measured at the flange, in F: what it exerts on what it carries [N, N·m]
+    wrench: Array  # (6,) measured at the flange, in F: of the flange on its load [N, N·m]
 
 
 class MomentumObserver:
-    """External torques of n joints, before gears are learned, and what is known of their error.
+    """External torques of n joints, without the learned corrections, and what is known of their error.
 
-    With the flange sensor they are those of contacts before it. Without it the configured load counts as a part of the arm, and
-    they are those of all contacts. A joint without deflection has the motor's torque less friction.
+    With the flange sensor these are the torques of contacts on the arm's side of the sensor.
+    Without the sensor the configured load is a part of the arm, and they are the torques of all
+    contacts. For a joint without deflection the motor torque minus friction is used.
 
-    What gears, encoders and the flange sensor's zero put into them is learned in planned motion while nothing is touched, from
-    these torques, in which no payload's error is.
+    The errors of gears, encoders and the sensor's zero are learned from these torques, in planned
+    motion without a contact. An error of the payload is not in them.
 
     Attributes:
         residual: the torques (n,) [N·m].
-        errors: what they are wrong by, as learned.
-        doubt: standard deviation of a change of the residual within some tenths of a second, for other reasons (n,) [N·m].
-        held: what of it friction may hold either way (n,) [N·m], of a joint that stands and does not tell its deflection.
+        errors: their learned errors.
+        doubt: standard deviation of a change of the residual in tenths of a second, by other causes
+            (n,) [N·m].
+        held: torque that friction may hold in either direction (n,) [N·m], at a joint that stands
+            and has no deflection; else 0.
 
     Args:
         arm: the arm's numbers.
-        dynamics: the controller's rigid model, whose recursion has been run with the tick's angles.
+        dynamics: the controller's rigid model; its recursion was run with the tick's angles.
     """
 
     def __init__(self, arm: Arm, dynamics: Dynamics) -> None:
@@ -76,16 +81,16 @@ class MomentumObserver:
         n, body = arm.n, dynamics.bare
         self.record = record(
             bare=(13,),  # last link without load: mass, centre, inertia about it
-            output_share=(),  # of friction
+            output_share=(),  # of the friction
             floor=(n,),
             count="i8",  # ticks in a row, at most `READY`
             q=(n,),  # a tick ago
             p=(n,),  # momentum, a tick ago [N·m·s]
-            drive=(n,),  # of it, a tick ago
-            load=(n,),  # what the gears bore, a tick ago
-            first=(2, n),  # residual and load behind the first of both filters
+            drive=(n,),  # torques that change the momentum, a tick ago
+            load=(n,),  # torque of the gears, a tick ago
+            first=(2, n),  # residual and load after the first of both filters
             residual=(n,),
-            borne=(n,),  # what passes through the gears, with the lag of the torques
+            borne=(n,),  # torque of the gears, with the lag of the residual
             doubt=(n,),
             held=(n,),
             quiet="i8",  # ticks since something was touched, as far as these torques tell
@@ -100,15 +105,15 @@ class MomentumObserver:
 
     @property
     def ready(self) -> bool:
-        """What it says counts: it has followed the arm for `READY` ticks."""
+        """The residual is valid: the observer has followed the arm for `READY` ticks."""
         return self._count.item() == READY
 
     def forget(self) -> None:
-        """What was before counts no more: a tick is missing, or the flange sensor came or went."""
+        """Start anew: a tick is missing, or the flange sensor came or went."""
         self._count[0] = 0
 
     def forget_zero(self) -> None:
-        """What was before counts no more: the flange sensor tells something else from now on."""
+        """Start anew: the flange sensor has another zero from now on."""
         self.forget()
         self.errors.forget_zero()
 
@@ -118,7 +123,7 @@ class MomentumObserver:
         Args:
             driven: as `Driven`.
             with_sensor: the wrench is valid.
-            valid: the joints are; a tick without them ends what was.
+            valid: the joint measurements are valid. A tick without them resets the observer.
             learn: planned motion moves the arm.
         """
         if not valid or with_sensor is not self._with_sensor:
@@ -152,7 +157,8 @@ def _update(records, model, driven, state) -> None:
         if own.count < 2:
             own.first[0, i], own.residual[i], own.first[1, i], own.borne[i] = 0.0, 0.0, load, load
         else:
-            # The speed is half a tick old: between it and the last one lies the drive of a tick ago.
+            # The speed is that of the middle of a tick: its change belongs to the last tick's
+            # drive.
             follow(own.first[0], own.residual, (p[i] - own.p[i]) / TICK - own.drive[i], i)
             follow(own.first[1], own.borne, own.load[i], i)
         own.p[i], own.drive[i], own.load[i] = p[i], drive[i], load
@@ -171,14 +177,14 @@ def _update(records, model, driven, state) -> None:
 
 @kernel
 def follow(first, second, now, i) -> None:
-    """A value through observer and the filter behind it: `second[i]` is as late as the torques."""
+    """A value through two filters like the observer's: `second[i]` is as late as the torques."""
     first[i] += GAIN * (now - first[i])
     second[i] += GAIN * (first[i] - second[i])
 
 
 @kernel
 def _doubt(own, driven, by_deflection, i) -> None:
-    """How wrong the residual of joint i may be, beyond what its errors' causes make: a deviation, and what friction may hold."""
+    """Error of joint i's residual besides the known causes: a deviation, and what friction holds."""
     rubs = driven.friction_deviation[i]
     own.doubt[i] = np.sqrt(own.floor[i] ** 2 + (own.output_share * rubs) ** 2)
     if not by_deflection:
@@ -188,10 +194,10 @@ def _doubt(own, driven, by_deflection, i) -> None:
 
 @kernel
 def _momentum(own, rigid, motion, out) -> None:
-    """The momentum of each joint, and what of its change the torques do not make: C^T q' - g.
+    """The momentum of each joint, and the part of its change that no torque makes: C^T q' - g.
 
-    About the origin o of joint i, whose axis is z, all links beyond have the angular momentum L and the linear one P:
-    p = z·L, and p' = z'·L - z·(o' x P) + z·(moments about o).
+    Joint i has the axis z and the origin o. All links beyond it have the linear momentum P and the
+    angular momentum L about o: p = z·L, and p' = z'·L - z·(o' x P) + z·(moments about o).
     """
     speed, with_sensor = motion
     p, driven = out

@@ -1,35 +1,38 @@
-"""Whether the payload fell, or a hand is there, as the joints alone tell it: for free-drive without a flange sensor (FD-19).
+"""Whether the payload fell or a hand pushes, by the joints: for free-drive without a flange sensor (FD-19).
 
-An arm goes on bearing a payload that it has lost. With the wrench p that this payload would need in the flange's motion, and the
-flange's Jacobian J, the joints then feel
+The motors still carry a payload that the arm has lost. Let p be the wrench that this payload would
+need in the flange's motion, and J the Jacobian of the flange. Then the joints feel
 
     tau_ext = tau_ext at entry + J' p.
 
-A hand makes these torques, too, if it pushes upward as hard as the payload weighs, and harder the faster the arm rises. Gears
-tell torques as well as their stiffness is known; so the payload fell where all but that share of the change is as J' p says, for
-as long as a fall is looked at elsewhere, and where most of the change, as a share of J' p, came at once, as no hand brings it
-about (`sim.estimation.sudden_change`).
+A hand makes the same torques if it pushes upward with the payload's weight, and harder the faster
+the arm rises. Torques from gears are only as exact as the known stiffness. So the payload fell if
+two things hold. The change agrees with J' p up to that error, for `LONGEST` ticks with the mean.
+And most of J' p came at once, faster than by a hand (`sim.estimation.sudden_change`).
 
-Both sides come from momenta, without accelerations, which would be known too late: an arm that has lost its payload gains 5 mm/s
-in each millisecond. The momentum observer tells the torques, and with the payload's momentum P and angular momentum L about the
-flange origin, which moves with v, and its centre at c from there,
+Both sides come from momenta, because accelerations would be known too late: an arm that has lost
+its payload gains 5 mm/s in each millisecond. The momentum observer gives the torques. The payload
+has the momentum P, and the angular momentum L about the flange origin. The origin moves with v, and
+the payload's centre is at c from it. So
 
     force = P' - m g,    moment = L' + v x P - c x m g,
 
-with the same lag as the observer's. Encoders' noise alternates, so the mean of some ticks is looked at.
+with the same lag as the observer's. Encoder noise alternates, so the mean of some ticks is used.
 
-Most of the time what is felt is neither, and the question is who may move the arm. What a joint tells since entry is wrong by no
-more than the ripple of its encoder, and by the share a that its stiffness may be wrong by of what its gear bears more or less:
+Most of the time nothing falls, and the question is who may move the arm. The error of a joint's
+torque since entry has three parts: the ripple of its encoder, a share a (error of the stiffness) of
+the change of the gear's load, and a wrong payload:
 
     |error| <= ripple + a |model - model at entry| + |J' s|.
 
-The last term is of a payload that was told wrong and accepted: what it weighs more or less was there at entry, but what it takes
-to be accelerated, s, was not. Its mass is that whose weight explains tau_ext at entry best, and no more than the arm may carry.
-Where the motor tells a torque, without the deflection, an error is larger than RARELY standard deviations once in a thousand.
+The last part is for a payload that was configured wrongly but accepted. Its wrong weight was there
+at entry; the wrench s to accelerate the wrong mass was not. That mass is the one whose weight
+explains tau_ext at entry best, at most what the arm may carry. If a torque comes from the motor,
+its error is RARELY standard deviations: one in a thousand is larger.
 
-Three cases follow. Where the change of every joint is within its error, nothing is felt. Where it differs from J' p by no more
-than its error and a |J' p|, the payload may have fallen, unless all of J' p is within the errors, too: a payload that no
-joint would miss does not move an arm that its friction holds. Else a hand is there.
+Three cases follow. If the change at every joint is within its error, nothing is felt. If it equals
+J' p within that error plus a |J' p|, the payload may have fallen. But a J' p within the errors at
+every joint is too small: friction holds an arm that lost so light a payload. Else a hand is there.
 """
 
 import math
@@ -63,48 +66,48 @@ NOT_ASKED = False, JointsFeel.NOTHING
 
 
 class JointTorques(NamedTuple):
-    """What the joints tell of a tick."""
+    """Sources of the joints' torques in a tick."""
 
     momentum: MomentumObserver  # of all contacts, as there is no flange sensor
     transmission: TransmissionTorque
-    deflection: Array  # torque that it bears as believed (n,) [N·m]
+    deflection: Array  # its torque with the believed stiffness (n,) [N·m]
 
 
 class PayloadFall:
-    """One tick at a time, in free-drive alone.
+    """Judges tick by tick, only in free-drive.
 
     Attributes:
-        torque: of a hand (n,) [N·m]; zeros where there is none.
-        certain: what of it is more than each joint may be wrong by (n,) [N·m].
+        torque: of a hand (n,) [N·m]; zeros without a hand.
+        certain: its part beyond the possible error of each joint (n,) [N·m].
     """
 
     def __init__(self, arm: Arm, rigid: NewtonEuler, joints: JointTorques, wrench: ExternalWrench) -> None:
         """
         Args:
-            arm: the numbers of its gears and encoders.
-            rigid: the controller's rigid model, which has been run with the tick's angles before `update`.
-            joints: updated in the same tick before.
-            wrench: knows the payload that may fall.
+            arm: gives the numbers of gears and encoders.
+            rigid: the controller's rigid model, run with the tick's angles before `update`.
+            joints: their update comes earlier in the same tick.
+            wrench: has the payload that may fall.
         """
         self._rigid, self._joints, self._wrench, self._most = rigid.record, joints, wrench, arm.payload
         self._record = record(
-            stiffness=(),  # what the gears' may be wrong by, relative to it
+            stiffness=(),  # largest relative error of the gears' stiffness
             before=(arm.n,),  # tau_ext at entry [N·m]
-            entry=(arm.n,),  # what the model wants the gears to bear there [N·m]
-            ripple=(arm.n,),  # what the encoder alone may change a torque by [N·m]
+            entry=(arm.n,),  # load of the gears at entry, by the model [N·m]
+            ripple=(arm.n,),  # change of a torque that the encoder's error can make [N·m]
             noise=(),  # sum of its squares [N²·m²]
             q=(arm.n,),  # a tick ago [rad]
-            untold=(),  # mass that the payload may be wrong by [kg]
-            momentum=(2, 6),  # P and L of the payload a tick ago, and of 1 kg at its centre, in B [N·s, N·m·s]
-            needed=(2, 6),  # force and moment behind the first and the second of both filters [N, N·m]
+            untold=(),  # possible error of the payload's mass [kg]
+            momentum=(2, 6),  # P and L of payload, and of 1 kg at its centre, a tick ago, in B
+            needed=(2, 6),  # force and moment after the first and the second filter [N, N·m]
             swing=(2, 6),  # the same to accelerate 1 kg at its centre
-            hand=(arm.n,),  # what a hand makes of the change of tau_ext [N·m]
-            certain=(arm.n,),  # what of that is beyond the errors
+            hand=(arm.n,),  # part of the change of tau_ext that is a hand's [N·m]
+            certain=(arm.n,),  # its part beyond the errors
             latest=(MEAN, 2, arm.n),  # change of tau_ext, and J' p [N·m]
-            ticks="i8",  # since both run
-            lasts="i8",  # ticks
-            fell="?",  # the payload did
-            unlike="i8",  # ticks for which the change has not been that of a fall, at most `SEEN`
+            ticks="i8",  # since the observer and this run
+            lasts="i8",  # ticks for which the change has been that of a fall
+            fell="?",  # whether the payload fell
+            unlike="i8",  # ticks since the change was that of a fall, at most `SEEN`
         )
         self._courses = courses()
         own = self._own = self._record[0]
@@ -117,7 +120,9 @@ class PayloadFall:
     def update(self, q: Array, *, free: bool, sensed: bool) -> tuple[bool, JointsFeel]:
         """One tick. Returns whether the payload fell, and what explains the torques of this tick.
 
-        Outside free-drive, while the flange sensor tells that, and while the observer begins, it did not, and nothing is felt.
+        Outside free-drive, while the flange sensor is used, and while the observer starts, the
+        answer
+        is: not fallen, nothing felt.
 
         Args:
             q: joint angles (n,) as measured [rad].
@@ -197,10 +202,10 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
 
 @kernel
 def _judge(own, courses, comes) -> None:
-    """Whether the payload fell; `comes`: the change is that of a fall which may not be all there yet.
+    """Whether the payload fell; `comes`: the change looks like a fall that may not be complete yet.
 
-    It is sure in the first ticks where a step is likelier by far than what a hand does, and as soon as a fall lasts where a step
-    is the likelier. Later it is not seen any more how the change came.
+    In the first ticks a step must be far likelier than a hand. As soon as the fall lasts, it must
+    only be likelier. Later it is no longer seen how the change came.
     """
     fits, first = own.lasts >= LONGEST - MEAN, own.unlike == SEEN
     if first and (fits or comes):
@@ -216,7 +221,7 @@ def _judge(own, courses, comes) -> None:
 
 @kernel
 def _need(own, rigid, payload, q) -> None:
-    """The wrench that the payload needs at the flange, in B, as late as the momentum observer's torques."""
+    """Wrench that the payload needs at the flange, in B, as late as the observer's torques."""
     v, w = np.zeros(3), np.zeros(3)
     if own.ticks > 0:
         for i in range(q.size):
@@ -239,7 +244,7 @@ def _need(own, rigid, payload, q) -> None:
 
 @kernel
 def _add(own, change, momentum, rest) -> None:
-    """The change of a momentum, and the `rest` of what it takes, as late as the torques."""
+    """The change of a momentum, plus the `rest` of the wrench, as late as the torques."""
     before, needed, k = change
     if own.ticks < 2:  # before, there is no speed to compare with
         needed[0, k] = needed[1, k] = rest

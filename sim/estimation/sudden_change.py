@@ -1,15 +1,17 @@
-"""Whether a change came at once, as of a payload that falls, or as a hand brings it about (FD-19).
+"""Whether a change came at once, as when a payload falls, or as a hand makes it (FD-19).
 
-A payload that falls is gone within a tick. A hand takes 10 ms and more to push as hard, pushes harder than that, or changes its
-push all the time. Of the last `SEEN` ticks of a value, each of these is a course with unknown size and level:
+A payload that falls is gone within a tick. A hand takes 10 ms and more to push as hard, pushes
+harder than that, or changes its push all the time. The last `SEEN` ticks of a value are compared
+with these courses; the size and the level of each course are free:
 
-- at once: a step, through the filters that the value went through;
+- at once: a step, through the same filters as the value;
 - a hand that comes or goes: a ramp of `RISES` ticks, through the same filters;
 - a hand that is there: a polynomial of the degree `DEGREE`;
 - nothing: a constant.
 
-Where the noise is white, as large as it may be, the likelihood of a course that misses the values by the sum S of squares is
-proportional to S^(-SEEN / 2); one with more free numbers pays log(SEEN) / 2 for each.
+Let S be the sum of the squared differences between a course and the values, with white noise of
+unknown size. The likelihood of the course is proportional to S^(-SEEN / 2). Each free number of a
+course costs log(SEEN) / 2.
 
 Source: generalised likelihood ratio of linear models of unknown variance; Schwarz, Estimating the Dimension of a Model, Annals of
 Statistics 6(2), 1978.
@@ -32,16 +34,17 @@ from sim.flange.wrench_hypotheses import LONGEST
 Array = NDArray[np.float64]
 
 MEAN = LONGEST // 2
-"""Ticks of which the mean is looked at; for the other half of `LONGEST` it has to be a fall."""
+"""The mean is over so many ticks; for the other half of `LONGEST` it must look like a fall."""
 
 SEEN = 2 * LONGEST + MEAN
-"""Ticks that are looked at: as long as a fall is looked at, with the mean, and as long before."""
+"""Window [ticks]: the time for which a fall is checked, the mean, and the same time before it."""
 
 RISES = (2 * RISE, 4 * RISE, 8 * RISE)
-"""Ticks in which a hand comes or goes: from twice its shortest, which a step cannot be told from, in factors of two."""
+"""Times in which a hand comes or goes [ticks], each twice the one before. The shortest possible
+time is left out, because it looks like a step."""
 
 FREE = 0.5 * math.log(SEEN)
-"""What a free number costs [nats]."""
+"""Cost of a free number [nats]."""
 
 TINY = float(np.finfo(np.float64).tiny)
 
@@ -50,26 +53,26 @@ class Came(NamedTuple):
     """How a value came to be what it is."""
 
     by_hand: float  # log of the odds of a hand's course against a step [nats]
-    at_all: float  # of a step against none
+    at_all: float  # the same of a step against a constant
     size: float  # of the step that fits best
-    level: float  # of that step, after it
+    level: float  # after that step
 
 
 def courses() -> Record:
-    """The courses of a value behind the momentum observer's two filters, and the value itself, still zero.
+    """Courses of a value after the momentum observer's two filters, and the value, still zero.
 
-    Each course is a row without level, of length 1; those of the polynomial are orthogonal.
+    Each course is a row with mean 0 and norm 1; the rows of the polynomial are orthogonal.
     """
     steps, ramps, smooth = _rows()
     made = record(
         steps=steps.shape,
-        level=(len(steps),),  # of a step of 1, its mean
-        length=(len(steps),),  # the same without level
+        level=(len(steps),),  # mean of a step of 1
+        length=(len(steps),),  # norm of that step, without its mean
         ramps=ramps.shape,
         smooth=smooth.shape,
         latest=(SEEN,),  # a ring
         newest="i8",  # place in it
-        value=(SEEN,),  # in the order of time, without level
+        value=(SEEN,),  # in the order of time, without its mean
     )
     own = made[0]
     own["level"], own["length"] = steps.mean(axis=1), np.linalg.norm(_flat(steps), axis=1)
@@ -79,9 +82,10 @@ def courses() -> Record:
 
 @cache
 def _rows() -> tuple[Array, Array, Array]:
-    """Steps and ramps from 0 to 1, of which each begins in another tick, and the polynomial: once, for they are every arm's.
+    """Steps and ramps from 0 to 1, each beginning in another tick, and the polynomial.
 
-    A ramp is the mean of the steps in its ticks.
+    They are computed once, because they are the same for all arms. A ramp is the mean of the steps
+    in its ticks.
     """
     before = SEEN + int(max(RISES))
     first, second, answer = np.zeros(1), np.zeros(1), np.zeros(2 * before)
@@ -149,7 +153,7 @@ def _dot(a, b) -> float:
 
 @kernel
 def _best(rows, value) -> int:
-    """The row along which most of the value is."""
+    """The row that fits the value best."""
     most, which = 0.0, 0
     for i in range(rows.shape[0]):
         square = _dot(rows[i], value) ** 2
@@ -160,5 +164,5 @@ def _best(rows, value) -> int:
 
 @kernel
 def _odds(left, against) -> float:
-    """Log of the odds of a course that leaves the sum `left` of squares against one that leaves `against` [nats]."""
+    """Log of the odds of a course with the sum of squares `left` against one with `against` [nats]."""
     return 0.5 * SEEN * math.log(max(against, TINY) / max(left, TINY))

@@ -1,6 +1,7 @@
-"""Friction and transmission torque of the joints, one tick in one order: what one module learns the other needs (AF-2, AF-3).
+"""Friction and transmission torque of the joints, a tick in the order in which they need each other (AF-2, AF-3).
 
-What they leave of the rigid model's torques on an arm that rests tells the payload's error without a flange sensor (FD-9).
+At rest the difference between these torques and the rigid model's gives the payload's error,
+without a flange sensor (FD-9).
 """
 
 import math
@@ -19,7 +20,7 @@ Bools = NDArray[np.bool_]
 
 
 NOT_TOLD = (0.0, math.inf)
-"""A payload's error of which nothing is known, and its standard deviation [kg]."""
+"""Error of a payload if nothing is known of it, and its standard deviation [kg]."""
 
 
 class Known(NamedTuple):
@@ -27,19 +28,19 @@ class Known(NamedTuple):
 
     ways: Bools  # (3, n) which of `transmission_torque.WAYS` may be used
     able: Bools  # (3, n) whether motor angle, output angle and current are measured
-    by_deflection: Bools  # (n,) whose friction is obtained from the deflection
+    by_deflection: Bools  # (n,) joints whose friction comes from the deflection
 
 
 class Learns(NamedTuple):
     """What may be learned in a tick."""
 
-    gears: bool  # what the deflection is wrong by: planned motion moves the arm
-    friction: bool  # the same, and friction is adaptive
+    gears: bool  # errors of the deflection: planned motion moves the arm
+    friction: bool  # friction: the same, and friction is adaptive
 
 
 @kernel
 def balance(records, given, known, learns) -> bool:
-    """One kernel: to call four takes longer than all that they do.
+    """One kernel, because calling four takes longer than their work.
 
     Args:
         records: of `joint_tracking` after `follow`, `AdaptiveFriction`, `TransmissionTorque`.
@@ -58,7 +59,7 @@ def balance(records, given, known, learns) -> bool:
     surplus(joints, tau_dyn, friction, transmission)
     spent, borne = np.empty(n), np.empty(n)
     touched = gears.free < SETTLE_TICKS
-    felt = False  # by a joint whose friction comes from the model, which bears no touch
+    felt = False  # some joint is touched, and its friction comes from the model, which has no touch
     for i in range(n):
         if not (known.able[0, i] and known.able[2, i]):
             own.surplus[i] = np.nan
@@ -76,7 +77,7 @@ def balance(records, given, known, learns) -> bool:
 
 @kernel
 def payload_levers(model, wrenches) -> NDArray[np.float64]:
-    """What 1 kg at the payload's centre takes of each joint at rest (n,) [N·m]; as `missing_mass`."""
+    """Joint torques at rest (n,) [N·m] that carry 1 kg at the payload's centre; args: `missing_mass`."""
     rigid = model[0]
     weight = (-rigid.gravity[0], -rigid.gravity[1], -rigid.gravity[2])
     turn = cross(turned(rigid.R, wrenches[0].com), weight)
@@ -89,10 +90,11 @@ def payload_levers(model, wrenches) -> NDArray[np.float64]:
 
 @kernel
 def missing_mass(transmission, model, wrenches, use) -> tuple[float, float]:
-    """What the payload weighs beyond what is configured, as the joints of a resting arm tell it, and its standard deviation [kg].
+    """Payload's mass minus the configured one, by the joints at rest, and its deviation [kg].
 
-    A mass m at the payload's centre takes of joint i the torque m b_i. What gears and motors bear beyond the rigid model, r_i,
-    has the variance s_i² of both, which falls as the gears are learned. Of all m, the likeliest is
+    A mass m at the payload's centre needs the torque m b_i of joint i. Gears and motors bear r_i
+    more than the rigid model. The variance s_i² of r_i is that of both; it falls as the gears are
+    learned. The likeliest m is
 
         m = sum of b_i r_i / s_i²  /  sum of b_i² / s_i².
 
@@ -100,7 +102,7 @@ def missing_mass(transmission, model, wrenches, use) -> tuple[float, float]:
         transmission: `TransmissionTorque.record`, after the tick's balance.
         model: the rigid model's recursion, run in this tick.
         wrenches: record of `sim.flange.external_wrench`, with the payload as configured.
-        use: which of `transmission_torque.WAYS` may be used, of which joint (3, n).
+        use: which of `transmission_torque.WAYS` may be used, for each joint (3, n).
     """
     own, levers = transmission[0], payload_levers(model, wrenches)
     told = certain = 0.0

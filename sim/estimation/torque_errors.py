@@ -1,10 +1,11 @@
-"""What the external torques of the joints are wrong by: gears, output encoders, the zero of the flange sensor. It is learned.
+"""Learned errors of the joints' external torques: by gears, output encoders, zero of the flange sensor.
 
-Three constants of an arm make torques where nothing is touched, each with a shape of its own: the error of a gear's stiffness
-makes a share of what the gear bears; the ripple of an output encoder, which is the deflection's, goes with the first and the
-second harmonic of its angle (a disc off its centre, and one that is not round); the zero of the flange sensor, fixed in the
-flange, makes torques by the levers of the posture. So the torques without a contact are a linear function of known causes with
-constant shares; shares that are known little make a doubt that grows with their causes' change.
+Three kinds of constants of an arm make torques without a contact. Each has its own shape. The error
+of a gear's stiffness makes a share of the gear's load. The ripple of an output encoder enters by
+the deflection; it follows the first and the second harmonic of the angle (a disc off its centre,
+and one that is not round). The zero of the flange sensor, fixed in the flange, makes torques by the
+levers of the posture. So the torques without a contact are a linear function of known causes with
+constant shares. A share that is known badly gives an uncertainty, which grows as its cause changes.
 """
 
 import numpy as np
@@ -20,35 +21,37 @@ from sim.estimation.transmission_torque import CONTACT, stiffness_range
 Array = NDArray[np.float64]
 
 ZERO, OWN = 6, 5
-"""Constants that all joints share: the zero of the flange sensor; and those of each: of its gear, then of its encoder."""
+"""Number of constants of all joints together (zero of the flange sensor), and of each joint (gear, then encoder)."""
 CAUSES = OWN + ZERO
-"""Of a joint's torque: what its gear bears, the levers of the sensor's zero, cosine and sine of angle and of twice the angle."""
+"""Causes of a joint's torque: load of its gear, levers of the sensor's zero, cosine and sine of the
+angle and of twice the angle."""
 STIFFNESS_WALK = 2e-3  # of the stiffness error [1/sqrt(s)]
 RIPPLE_WALK = 0.01  # of each harmonic, relative to the ripple's torque [1/sqrt(s)]
 FORCE_WALK, TORQUE_WALK = 0.1, 0.04
-"""Of the flange sensor's zero [N/sqrt(s)], [N·m/sqrt(s)]: enough to follow a faulty one that drifts by 0.02 N and 0.02 N·m a
-second (bench `false_contacts`); one that warms up: 0.013 N and 0.001 N·m (assets/robots/)."""
-CORRELATED = 100.0  # ticks over which errors of the torques stay alike
+"""Walk of the flange sensor's zero [N/sqrt(s)], [N·m/sqrt(s)]. It is enough to follow a faulty
+sensor that drifts by 0.02 N and 0.02 N·m a second (bench `false_contacts`); a sensor that warms up
+drifts by 0.013 N and 0.001 N·m (assets/robots/)."""
+CORRELATED = 100.0  # ticks over which errors of the torques are correlated
 CARRIED = 0.15
-"""Share of what the gears bear that a payload may be wrong by: up to a fifth of a payload, which is most of what they bear. It
-counts without the flange sensor alone."""
+"""Error of the gears' load by a wrong payload, relative to that load. It is used only without the
+flange sensor. The payload may be wrong by a fifth, and makes most of the load."""
 SMOOTH = 0.02
-"""Share a tick by which what is felt is smoothed, to tell a contact: a tenth of a second, over which an arm's swing on its
-gears is little."""
+"""Smoothing factor per tick (0.1 s) of the torque that shows a contact; an arm's swing on its gears
+averages out over that time."""
 FOLLOW = 0.0066
-"""Share a tick by which what is felt while nothing is touched follows: a time constant of 0.3 s, as the links' watch has it."""
+"""Smoothing factor per tick (0.3 s) of the torque without a contact; the watch on links has the same."""
 WAIT = 60
-"""Ticks until a torque is learned from: a hand that comes is known by then, and not learned."""
-SURE = 3.0  # deviations of a constant that is learned
+"""Ticks until a torque is learned from: by then a hand that comes is noticed, and not learned."""
+SURE = 3.0  # standard deviations that a learned constant may be wrong by
 
 
 class TorqueErrors:
     """Constants of n joints and of the flange sensor, by a Kalman filter over all of them.
 
     Attributes:
-        causes: of each joint's torque in this tick (n, CAUSES) [N·m], [m], [1], [1].
-        shares: constants that they come with, as learned (n, CAUSES) [1], [N], [N·m], [N·m].
-        misfit: by how much each share may still be wrong (n, CAUSES).
+        causes: causes of each joint's torque in this tick (n, CAUSES) [N·m], [m], [1], [1].
+        shares: learned constants, one for each cause (n, CAUSES) [1], [N], [N·m], [N·m].
+        misfit: possible error of each share (n, CAUSES).
 
     Args:
         arm: the arm's numbers.
@@ -58,23 +61,23 @@ class TorqueErrors:
         n = arm.n
         size = ZERO + OWN * n
         self.record = record(
-            motor_constant=(),  # what it may be wrong by, relative to it
+            motor_constant=(),  # its largest relative error
             link_mass=(),  # the same
-            softest=(),  # springs, against what is believed, at least
-            stiffest=(),
+            softest=(),  # least relative error of the springs' stiffness
+            stiffest=(),  # largest
             causes=(n, CAUSES),
             shares=(n, CAUSES),
             misfit=(n, CAUSES),
             known=(size,),  # the constants
             covariance=(size, size),
-            most=(size,),  # what each may be
+            most=(size,),  # largest size of each
             walk=(size,),  # variance that a tick adds
             felt=(n, 1 + CAUSES),  # torque and causes, smoothed
-            rest=(n, 1 + CAUSES),  # the same, as they were while nothing was touched
-            waiting=(WAIT, 2 + CAUSES),  # torque, its variance and causes of one joint a tick, yet to be learned from
-            joint=f"{WAIT}i8",  # whose they are
-            at="i8",  # where the next one goes
-            count="i8",  # so many are there
+            rest=(n, 1 + CAUSES),  # the same, as they were without a contact
+            waiting=(WAIT, 2 + CAUSES),  # torque, variance, causes of a joint a tick, to be learned
+            joint=f"{WAIT}i8",  # the joint of each of these
+            at="i8",  # place of the next one
+            count="i8",  # number of these
         )
         own = self._own = self.record[0]
         self.causes, self.shares, self.misfit = own["causes"], own["shares"], own["misfit"]
@@ -89,7 +92,7 @@ class TorqueErrors:
         np.fill_diagonal(own["covariance"], most * most / 3.0)  # of a uniform error
 
     def forget_zero(self) -> None:
-        """The flange sensor tells something else from now on."""
+        """The flange sensor has another zero from now on."""
         own = self._own
         own["known"][:ZERO] = 0.0
         own["covariance"][:ZERO] = own["covariance"][:, :ZERO] = 0.0
@@ -98,20 +101,21 @@ class TorqueErrors:
 
 @kernel
 def look(errors, rigid, bears, state) -> None:
-    """Causes of this tick, and what is known of their shares.
+    """Compute the causes of this tick, and their shares as known.
 
     Args:
         errors: `TorqueErrors.record`.
         rigid: row of the rigid model's recursion.
         bears: torques through the gears and residuals (n,) [N·m].
-        state: output angles (n,) [rad], which joints' torques come from the deflection (n,), and whether the sensor is there.
+        state: output angles (n,) [rad], joints whose torque comes from the deflection (n,), and
+            whether the sensor is used.
     """
     own = errors[0]
     borne, residual = bears
     q, by_deflection, with_sensor = state
     R, jacobian = rigid.R, rigid.jacobian
-    # All drift, whether there is something to learn from or not, but never beyond what was believed at first: else an error that
-    # is taken for a touch, of which nothing is learned, would stay for good.
+    # The uncertainty of each constant grows in every tick, at most to its first value. Otherwise an
+    # error that looks like a contact would stay for ever, because nothing is learned in a contact.
     for at in range(own.known.size):
         P = own.covariance[at, at]
         own.covariance[at, at] = P + min(own.walk[at], max(own.most[at] ** 2 / 3.0 - P, 0.0))
@@ -132,7 +136,7 @@ def look(errors, rigid, bears, state) -> None:
             shares[k] = own.known[at]
             misfit[k] = min(own.most[at], SURE * np.sqrt(own.covariance[at, at]))
         if not by_deflection[i]:
-            # Without a contact it bears what the model says: a push makes no error of its own.
+            # This sum is the load without the contact, as the model has it: a push adds no error.
             causes[0] = borne[i] + residual[i]
             shares[0], misfit[0] = 0.0, own.motor_constant
         misfit[0] += own.link_mass + (0.0 if with_sensor else CARRIED)
@@ -140,7 +144,7 @@ def look(errors, rigid, bears, state) -> None:
 
 @kernel
 def _place(i, k):
-    """Where the constant of cause k of joint i stands among all."""
+    """Place of the constant of cause k of joint i among all."""
     if k == 0:
         return ZERO + OWN * i
     return k - 1 if k <= ZERO else ZERO + OWN * i + k - ZERO
@@ -148,14 +152,14 @@ def _place(i, k):
 
 @kernel
 def noise(own, doubt, borne):
-    """Variance of what is not explained of a joint: of links' masses, which go with what is borne, and of all else [N²·m²]."""
+    """Variance of a joint's torque by errors of links' masses, in proportion to the load, and by the rest [N²·m²]."""
     masses = own.link_mass * borne
     return doubt * doubt + masses * masses
 
 
 @kernel
 def left_over(shares, torque, causes):
-    """What the causes leave of a joint's torque [N·m]."""
+    """A joint's torque, minus the torques of its causes [N·m]."""
     for k in range(CAUSES):
         torque -= shares[k] * causes[k]
     return torque
@@ -163,9 +167,9 @@ def left_over(shares, torque, causes):
 
 @kernel
 def variance(own, i, causes):
-    """Of what these causes make of joint i's torque, as well as their shares are known [N²·m²].
+    """Variance of joint i's torque by these causes, as their shares are uncertain [N²·m²].
 
-    The covariance is symmetric, so half is read: of the joint's own causes, the zero's, and both.
+    The covariance is symmetric, so half of it is read: joint's own causes, the zero's, and both.
     """
     P, first, known = own.covariance, ZERO + OWN * i, 0.0
     for k in range(OWN):
@@ -185,10 +189,11 @@ def variance(own, i, causes):
 
 @kernel
 def beyond(own, i, what, doubt):
-    """How much of a torque of joint i is more than its causes and the rest may be wrong by [N·m]: 0 where nothing is.
+    """The part of joint i's torque beyond its possible error [N·m]; 0 if the error may be all of it.
 
-    `what` is what the causes leave of the torque, and the causes, or the change of both; `doubt` is the variance of what they do
-    not explain [N²·m²], and how many deviations of both count as an error. Where it alone is as large, theirs is not asked for.
+    `what`: the torque minus its causes' torques, and the causes; or the change of both. `doubt`:
+    variance of the rest [N²·m²], and the number of deviations that count as an error. If this
+    variance explains the torque, that of the causes is not computed.
     """
     (left, causes), (rest, deviations) = what, doubt
     if left * left <= deviations**2 * rest:
@@ -199,14 +204,14 @@ def beyond(own, i, what, doubt):
 
 @kernel
 def _feels(own, i, felt, rest) -> bool:
-    """Joint i feels such a torque, with its causes, or such a change of both."""
+    """Whether a torque of joint i, or its change, is beyond the possible error; `felt`: torque, causes."""
     causes = felt[1:]
     return beyond(own, i, (left_over(own.shares[i], felt[0], causes), causes), (rest, CONTACT)) != 0.0
 
 
 @kernel
 def begin(errors, residual) -> None:
-    """What is felt now is what is felt where nothing is touched, as far as is known."""
+    """Take the torques of now as those without a contact, because nothing better is known."""
     own = errors[0]
     for i in range(residual.size):
         own.felt[i, 0], own.felt[i, 1:] = residual[i], own.causes[i]
@@ -215,9 +220,10 @@ def begin(errors, residual) -> None:
 
 @kernel
 def touched(errors, residual, doubt, by_deflection) -> bool:
-    """Some joint feels more than causes and the rest may be wrong by, or such a change.
+    """True if, at some joint, the torque or its change is beyond the possible error.
 
-    What is known little may be large, but changes no more than its causes: that shows a hand.
+    A badly known share can make a large error, but that changes only with its cause. Another change
+    shows a hand.
     """
     own, found, change = errors[0], False, np.empty(1 + CAUSES)
     for i in range(residual.size):
@@ -247,18 +253,18 @@ def learn(errors, residual, doubt, by_deflection) -> None:
     waiting = own.waiting[at]
     waiting[0], waiting[1], waiting[2:] = residual[i], noise(own, doubt[i], own.causes[i, 0]), own.causes[i]
     if not by_deflection[i]:
-        waiting[2:] = 0.0  # it tells nothing
+        waiting[2:] = 0.0  # nothing is learned from it
 
 
 @kernel
 def forget(errors) -> None:
-    """Something is touched: what was felt lately is not learned from."""
+    """Something is touched: nothing is learned from the last torques."""
     errors[0].count = 0
 
 
 @kernel
 def _learn(own, i, felt, n) -> None:
-    """A Kalman filter's step of joint i on torque = sum of causes times shares: one tick in n."""
+    """A Kalman filter step for joint i, in one tick of n: torque = sum of causes times shares."""
     P, size, causes = own.covariance, own.known.size, felt[2:]
     gains = np.zeros(size)
     for k in range(CAUSES):

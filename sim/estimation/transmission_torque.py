@@ -1,4 +1,4 @@
-"""Transmission torque module: what passes through each gear, told three ways and fused (AF-3)."""
+"""Transmission torque module: the torque through each gear, estimated in three ways and fused (AF-3)."""
 
 import math
 from typing import NamedTuple
@@ -19,92 +19,99 @@ WAYS = ("dynamics", "deflection", "motor")
 
 DYNAMICS, DEFLECTION, MOTOR = range(3)
 
-MODEL_FLOOR = 0.004  # what the rigid model misses at least, relative to the torque limit: centres of mass, output friction
+MODEL_FLOOR = 0.004  # least error of the model, relative to the torque limit: centres of mass, output friction
 ACCELERATION_FLOOR = 0.1  # deviation of the output's acceleration at rest [rad/s²]
-ACCELERATION_SHARE = 0.15  # and of the largest acceleration lately: links swing on their springs faster than the filter sees
+ACCELERATION_SHARE = 0.15  # deviation / largest acceleration lately: links swing faster than the filter
 LATELY = math.exp(-TICK / 0.3)
 STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
 OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]
 RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
-CORRELATED = 100.0  # ticks over which the deflection's error stays alike
+CORRELATED = 100.0  # ticks over which the deflection's errors are correlated
 CONTACT = 2.5  # deviations between two ways that count as a contact
-CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque limit
-SLOWLY = TICK / 0.3  # where two ways differ for longer than this [s], it is the deflection's error
-REMEMBERED = 1500  # ticks of motion over which it is remembered how much they differed; before so many it does not count
-SETTLE_TICKS = 100  # after a contact, before its end is believed
+CONTACT_FLOOR = 0.012  # least difference that counts as a contact, relative to the torque limit
+SLOWLY = TICK / 0.3  # share a tick: a difference that lasts over 0.3 s is the deflection's error
+REMEMBERED = 1500  # ticks of motion for the mean of two ways' difference; it is not used earlier
+SETTLE_TICKS = 100  # after a contact, until its end is believed
 
 
 def stiffness_range(accuracy: float) -> tuple[float, float]:
-    """Relative error of the stiffness that is believed, least and most, where it is known to the share `accuracy`."""
+    """Least and largest relative error of the believed stiffness, if it is known up to the share `accuracy`."""
     return 1.0 / (1.0 + accuracy) - 1.0, 1.0 / (1.0 - accuracy) - 1.0
 
 
 class Rubbing(NamedTuple):
-    """What friction leaves uncertain in a tick, and how the motors accelerate."""
+    """Friction and its uncertainty in a tick, and the motors' acceleration."""
 
     deviation: Array  # of the friction estimate (n,) [N·m]
-    stiction: Array  # what a standing joint may hold as well (n,) [N·m], 0 for one that moves
+    stiction: Array  # torque that a standing joint may hold in addition (n,) [N·m], 0 if it moves
     total: Array  # friction as estimated (n,) [N·m]
     acceleration: Array  # of the motors (n,) [rad/s²]
 
 
 class TransmissionTorque:
-    """Transmission torque of n joints [N·m], three ways, and their fusion by inverse variances.
+    """Transmission torque of n joints [N·m], in three ways, and their fusion by inverse variances.
 
-    The rigid model is right up to masses and centres while nothing is touched, and wrong by the external torque in contact.
-    The deflection feels contacts, but its stiffness is known to a fifth and the output encoder's ripple counts in full: the
-    stiffness error and an offset are learned from the rigid model while nothing is touched. The motor's way is uncertain by
-    the friction estimate, and by the whole stiction while the joint stands. A contact is where the rigid model differs from
-    the deflection, or without it from the motor's way, by more than both allow.
+    Without a contact the rigid model's only errors are those of masses and centres of mass. In
+    contact the external torque is added to its error. The deflection contains contacts, but its
+    stiffness is known only to a fifth, and the output encoder's ripple enters in full. So the
+    stiffness error and an offset are learned from the rigid model without a contact. The motor's
+    way has the error of the friction estimate, and the whole stiction while the joint stands. There
+    is a contact if the rigid model differs from the deflection (or, without a deflection, from the
+    motor's way) by more than both errors allow.
 
-    The model's errors change fast, with accelerations that it does not see in time; the deflection's slowly, with the angle.
-    So the deflection is trusted as far as the two have agreed lately, in the mean over a third of a second, more or less than was
-    believed of it, and as far as the model explains how much they differ now; the model as far as the rest of their difference
-    was small (innovation-based adaptive estimation: Mehra, 1970). That is for the fusion alone: agreement at the angles of now
-    says little of the next ones, and what tells a hand from an error must not count on it.
+    The model's errors change fast, with accelerations that it sees too late; the deflection's
+    errors change slowly, with the angle. So the weight of the deflection depends on how well the
+    two have agreed lately (mean over 0.3 s), and on whether the model's error explains their
+    difference of now. This may be more or less than its expected weight. The weight of the model
+    depends on how small the rest of the difference was (innovation-based adaptive estimation:
+    Mehra, 1970). This holds only for the fusion. Agreement at these angles says little about other
+    angles, so code that tells a hand from an error does not use it.
 
     Attributes:
         ways, deviations: each way (3, n), and its standard deviation.
-        fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
-        external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
-        by_motor: standard deviation of the motor's way (n,) where `external` is told by that, 0 where the deflection tells it.
+        fused, deviation: their fusion (n,), and its standard deviation; a joint without any way
+            keeps its last value.
+        external: external torque (n,): model minus deflection, or without a deflection minus the
+            motor's way; 0 without both.
+        by_motor: deviation of the motor's way (n,) if `external` comes from it; 0 if from the
+            deflection.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
-        offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
+        offset: learned error of the deflection's torque at rest (n,) [N·m].
     """
 
     def __init__(self, arm: Arm, inertia: Array) -> None:
-        """`inertia` (n,) is what a joint usually has to move [kg·m²]."""
+        """`inertia` (n,): inertia that a joint usually has to move [kg·m²]."""
         n = arm.n
         limit = np.array(arm.limits.torque)
         ripple = ripple_torque(arm)
         self.record = record(
-            motor_constant=(),  # what it may be wrong by, relative to it
+            motor_constant=(),  # its largest relative error
             stiffness=(),  # the same
             link_mass=(),  # the same
-            softest=(),  # springs, against what is believed, at least
-            stiffest=(),
-            floor=(n,),  # of the model's deviation [N·m]
-            ripple=(n,),  # of the deflection's offset [N·m]
-            least=(n,),  # difference that may be a contact [N·m]
+            softest=(),  # least relative error of the springs' stiffness
+            stiffest=(),  # largest
+            floor=(n,),  # least deviation of the model [N·m]
+            ripple=(n,),  # largest offset of the deflection [N·m]
+            least=(n,),  # least difference that may be a contact [N·m]
             inertia=(n,),
             swing=(),  # the largest acceleration lately [rad/s²]
             stiffer=(n,),
             offset=(n,),
             covariance=(n, 2, 2),
             walk=(n, 2),
-            differ=(n,),  # model from deflection, slowly [N·m]
-            slow_square=(n,),  # mean square of that
-            fast_square=(n,),  # and of the rest
-            compared=(n,),  # ticks over which they were compared
+            differ=(n,),  # smoothed difference of model and deflection [N·m]
+            slow_square=(n,),  # mean square of this difference
+            fast_square=(n,),  # mean square of the rest of the difference
+            compared=(n,),  # ticks over which these means were taken
             ways=(3, n),
             deviations=(3, n),
             fused=(n,),
             deviation=(n,),
             external=(n,),
             by_motor=(n,),
-            model=(n,),  # standard deviation of the rigid model where nothing is touched
+            model=(n,),  # standard deviation of the rigid model without a contact
             quiet="i8",  # ticks since some joint felt a contact, at most `SETTLE_TICKS`
-            free="i8",  # ticks since one felt more than friction may be wrong by, too
+            free="i8",  # the same of a contact that not even a wrong friction explains
         )
         own = self._own = self.record[0]
         for name in ("motor_constant", "stiffness", "link_mass"):
@@ -120,7 +127,7 @@ class TransmissionTorque:
         self.forget()
 
     def forget(self) -> None:
-        """Begin to learn anew: the rigid model has another load, and what was learned from it may have been its error."""
+        """Learn anew: the rigid model has another load, and the learned errors may have been the model's."""
         own = self._own
         for column in ("stiffer", "offset", "covariance", "differ", "slow_square", "fast_square", "compared"):
             own[column] = 0.0
@@ -137,14 +144,15 @@ class TransmissionTorque:
 def fuse(transmission, rubbing, use, learns) -> None:
     """One tick, on the raw values that the caller has put into `ways`: compare, then fuse.
 
-    These are: torque of the rigid model and of the output side's friction; stiffness as believed times the deflection;
-    tau_m - J theta_dd - friction of the input side.
+    These values are: torque of the rigid model plus friction of the output side; the believed
+    stiffness times the deflection; tau_m - J theta_dd - friction of the input side.
 
     Args:
         transmission: `TransmissionTorque.record`.
-        rubbing: what that friction leaves uncertain, as `Rubbing`.
-        use: which of `WAYS` may be used, of which joint (3, n).
-        learns: planned motion moves some joint; at rest nothing is learned, for a wrong payload would pass for a soft spring.
+        rubbing: that friction and its uncertainty, as `Rubbing`.
+        use: which of `WAYS` may be used, for each joint (3, n).
+        learns: planned motion moves some joint. At rest nothing is learned, because a wrong payload
+            would look like a soft spring.
     """
     rubbing = Rubbing(*rubbing)
     own = transmission[0]
@@ -162,8 +170,9 @@ def _compare(own, rubbing, use):
     """Correct the deflection, and find what the rigid model does not explain.
 
     Returns:
-        Whether something is touched, and whether it is where friction may be twice what is believed, or none: by the motor's way
-        friction that is missing looks like what stands in the way, and were it not learned, it would stay so.
+        Whether something is touched; and whether this holds even if friction were twice the
+        estimate, or none. In the motor's way missing friction looks like an obstacle: if it were
+        not learned, it would stay so.
     """
     friction_deviation, stiction, total, acceleration = rubbing
     ways, deviations, external = own.ways, own.deviations, own.external
@@ -201,7 +210,7 @@ def _compare(own, rubbing, use):
 
 @kernel
 def _correct_spring(own, use) -> None:
-    """Learn stiffness error and offset of the deflection from the model, where nothing touches."""
+    """Learn stiffness error and offset of the deflection from the model, without a contact."""
     for i in range(own.external.size):
         if not (use[0, i] and use[1, i]):
             continue
@@ -214,7 +223,8 @@ def _correct_spring(own, use) -> None:
         differ = own.differ[i]
         own.slow_square[i] += (differ**2 - own.slow_square[i]) / compared
         own.fast_square[i] += ((error - differ) ** 2 - own.fast_square[i]) / compared
-        # What nothing bends tells nothing of its stiffness: it may drift, but never beyond what was believed at first.
+        # An unbent spring tells nothing of its stiffness: its uncertainty grows, at most to the
+        # first one.
         P[0, 0] = min(P[0, 0] + walk[0], own.stiffness**2 / 3.0)
         P[1, 1] = min(P[1, 1] + walk[1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
@@ -225,14 +235,15 @@ def _correct_spring(own, use) -> None:
         P[1, 0] = P[0, 1]
         stiffer = own.stiffer[i] + g0 * error / spread
         own.stiffer[i] = min(max(stiffer, own.softest), own.stiffest)
-        # The offset was learned together with a stiffness that cannot be: it goes with the bound.
+        # If the stiffness was clipped to its bound, the offset learned with it is corrected
+        # likewise.
         offset = own.offset[i] + g1 * error / spread + (own.stiffer[i] - stiffer) * P[0, 1] / P[0, 0]
         own.offset[i] = min(max(offset, -ripple), ripple)
 
 
 @kernel
 def weighed(own, use, i, first) -> tuple[float, float]:
-    """Of joint i, over the ways from `first` on: the sum of their weights, inverse variances, and of the torques so weighed."""
+    """Sum of the weights (inverse variances) of joint i's ways from `first` on, and of the weighted torques."""
     weight, total = 0.0, 0.0
     for k in range(first, use.shape[0]):
         if use[k, i]:
@@ -249,7 +260,8 @@ def _fuse(own, use, contact) -> None:
         outside = own.external[i] if contact else 0.0
         variance = own.model[i] ** 2
         if use[1, i] and own.compared[i] == REMEMBERED:
-            # Without an output angle, though, the model's acceleration is made of this torque.
+            # Only with a measured output angle: else the model's acceleration comes from this
+            # torque.
             variance = min(variance, (own.link_mass * ways[0, i]) ** 2 + own.floor[i] ** 2 + own.fast_square[i])
         deviations[0, i] = np.sqrt(variance + outside**2)
         weight, total = weighed(own, use, i, 0)

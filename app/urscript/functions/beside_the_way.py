@@ -20,18 +20,18 @@ from sim.arm.frames import cross, rotation_vector
 Doing = Generator[None, None, Value]
 
 SLOWING = 20.0
-"""Deceleration where a program says none [rad/s²] (URScript manual)."""
+"""Deceleration if a program gives none [rad/s²] (URScript manual)."""
 
 STANDING = 1e-3
-"""Slower the tool's way says nothing of a direction [m/s]."""
+"""Below this speed the tool's motion has no usable direction [m/s]."""
 
 
 def of_path_offsets(robot: RobotSide) -> Iterator[Builtin]:
-    """path_offset_*, and what the motion would be without an offset."""
+    """path_offset_*, and pose and speed of the motion without its offset."""
     offsets = robot.arm.offsets
 
     def along() -> tuple[PoseValue, tuple[float, ...]]:
-        """Pose of the tool and its speed, as the motion has them."""
+        """Pose and speed of the tool along the motion, without the offset."""
         simulation = robot.simulation
         own = simulation.controller.references.own
         q, qd = (simulation.estimate.q, simulation.estimate.qd * 0.0) if own is None else (own.q, own.qd)
@@ -95,7 +95,7 @@ def of_conveyors(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def of_encoders(robot: RobotSide) -> Iterator[Builtin]:
-    """encoder_*, and their names of before."""
+    """encoder_*, and the older names of these functions."""
     encoders = robot.memory.encoders
 
     def decode(index: int, decoder: int, a: int, b: int) -> None:
@@ -137,7 +137,7 @@ def of_encoders(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _way_frame(place: PoseValue, v: tuple[float, ...]) -> PoseValue:
-    """Where the tool is, with x along its way, y = x × the tool's z; where it stands, x is the tool's."""
+    """Place of the tool, with x along its motion and y = x × the tool's z; if the tool stands, x is the tool's x."""
     turn = quaternion(place[3:])
     speed = math.hypot(*v)
     x = np.array(v) / speed if speed > STANDING else np.array(turned(turn, (1.0, 0.0, 0.0)))
@@ -148,7 +148,7 @@ def _way_frame(place: PoseValue, v: tuple[float, ...]) -> PoseValue:
 
 
 def _taking_a_tick(work: Callable[..., None]) -> Callable[..., Doing]:
-    """What begins with the next tick."""
+    """Do `work`, which takes effect with the next tick."""
 
     def taking(*given: Value) -> Doing:
         work(*given)
@@ -158,7 +158,7 @@ def _taking_a_tick(work: Callable[..., None]) -> Callable[..., Doing]:
 
 
 def _leaving(robot: RobotSide) -> Callable[..., Doing]:
-    """Come to rest, and then be on the way of the motions."""
+    """Come to rest; then the motions have no offset any more."""
 
     def leave(a: float) -> Doing:
         robot.arm.offsets.end()

@@ -1,4 +1,4 @@
-"""Functions of the controller itself: RTDE's fields, the ports that Modbus clients see, what motions are planned with."""
+"""Functions of the controller itself: RTDE's fields, registers of the Modbus server, settings of planned motions."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -25,7 +25,7 @@ from app.urscript.robot.robot_side import RobotSide
 REGISTER_BITS = 16
 INPUT_REGISTER, OUTPUT_REGISTER = 0, 1
 GENERAL = range(128, 256)
-"""Registers of the robot's own Modbus server: digital inputs, digital outputs, and those for general use (UR, Modbus server)."""
+"""Registers of the robot's own Modbus server: digital inputs, digital outputs, general use (UR, Modbus server)."""
 
 
 def of_controller(robot: RobotSide) -> Iterator[Builtin]:
@@ -36,7 +36,7 @@ def of_controller(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _of_record(robot: RobotSide) -> Iterator[Builtin]:
-    """What RTDE tells, by name."""
+    """Output fields of RTDE, by name."""
     get = robot.record.get
 
     def field(key: str) -> Value:
@@ -53,7 +53,7 @@ def _of_record(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _of_ports(robot: RobotSide) -> Iterator[Builtin]:
-    """Registers of the robot's Modbus server, which nobody serves here: programs share them."""
+    """Registers of the robot's Modbus server. There is no such server here: only programs share the registers."""
     ports, get = robot.memory.ports, robot.record.get
 
     def read(address: int) -> int:
@@ -86,7 +86,7 @@ def _of_ports(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _of_motion_settings(kept: dict[str, float]) -> Iterator[Builtin]:
-    """What is kept and told, and changes no motion of this robot."""
+    """Settings that are kept and can be read, but change no motion of this robot."""
 
     def base(acceleration: tuple[float, ...]) -> None:
         if any(acceleration):
@@ -113,4 +113,4 @@ def _of_motion_settings(kept: dict[str, float]) -> Iterator[Builtin]:
 
 
 def _nothing(*_: Value) -> None:
-    """A setting that changes nothing of a simulated robot."""
+    """A setting without effect on a simulated robot."""

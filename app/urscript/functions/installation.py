@@ -1,5 +1,7 @@
-"""Functions that set an installation up: pendants write them at the begin of every program they save (URScript manual, modules
-interfaces and ioconfiguration)."""
+"""Functions that set up an installation (URScript manual, modules interfaces and ioconfiguration).
+
+Pendants write calls of these functions at the beginning of every program that they save.
+"""
 
 from collections.abc import Callable, Iterator
 
@@ -11,7 +13,7 @@ from app.urscript.robot.robot_side import RobotSide
 from app.urscript.robot.run_states import OutputKind
 
 BAUD_RATES = (9600, 19200, 38400, 57600, 115200, 1_000_000, 2_000_000, 5_000_000)
-"""Of the tool's serial line [1/s] (URScript manual, set_tool_communication)."""
+"""Rates of the tool's serial line [bit/s] (URScript manual, set_tool_communication)."""
 
 OUTPUTS = {
     "standard_digital": (OutputKind.DIGITAL, 0, 8),
@@ -20,12 +22,12 @@ OUTPUTS = {
     "gp_boolean": (OutputKind.REGISTER, 0, 128),
     "standard_analog": (OutputKind.ANALOG, 0, 2),
 }
-"""What each name of a run state means: the first of its outputs, and how many they are."""
+"""Outputs behind each name in a run state: their kind, the number of the first, and how many."""
 
 INPUTS = {"standard_digital": (0, 8), "configurable_digital": (8, 8), "tool_digital": (16, 2), "gp_boolean": (0, 128)}
 
 ACTIONS = ("default", "freedrive")
-"""Of an input (URScript manual)."""
+"""Actions of an input (URScript manual)."""
 
 
 def of_installation(robot: RobotSide) -> Iterator[Builtin]:
@@ -38,7 +40,7 @@ def of_installation(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _of_signals(record: FieldRecord) -> Iterator[Builtin]:
-    """The tool's connector, and what the analog signals are measured as."""
+    """The tool's connector, and the units of the analog signals."""
     domain = Taken("domain", within(integer, 0, 1))
     for name in ("set_standard_analog_input_domain", "set_tool_analog_input_domain", "set_analog_outputdomain"):
         yield builtin(name, _domain(record, name), Taken("port", within(integer, 0, 3)), domain)
@@ -74,7 +76,7 @@ def _domain(record: FieldRecord, name: str) -> Callable[[int, int], None]:
 
     def set_(port: int, domain: int) -> None:
         if port > 1:
-            return  # of the older controllers' tool
+            return  # the tool's ports of older controllers
         bit, before = 1 << (port + (first or 0)), int(record.field(field).item())
         record.put(field, before | bit if domain else before & ~bit)
 
@@ -82,7 +84,7 @@ def _domain(record: FieldRecord, name: str) -> Callable[[int, int], None]:
 
 
 def _of_run_states(robot: RobotSide) -> Iterator[Builtin]:
-    """What outputs are while a program runs, and when none does."""
+    """Values of outputs while a program runs, and while no program runs."""
     state = Taken("state", within(integer, 0, 3))
     for name, (kind, first, count) in OUTPUTS.items():
         output = Taken("outputId", within(integer, 0, count - 1))

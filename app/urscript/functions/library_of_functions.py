@@ -26,7 +26,7 @@ SECONDARY = "it takes time, which a secondary program must not"
 
 
 def builtins_of(robot: RobotSide, history: deque[tuple[float, ...]], secondary: bool = False) -> dict[str, Builtin]:
-    """By name; a secondary program may not move the arm, nor wait on purpose (URScript manual, "Secondary programs")."""
+    """All functions by name. A `secondary` program must not move the arm or wait (URScript manual, "Secondary programs")."""
     found = [
         *of_numbers(robot.seed),
         *of_poses(),

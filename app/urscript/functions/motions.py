@@ -48,11 +48,11 @@ POSITIVE = within(number, 1e-6, MOST)
 ZERO_UP = within(number, 0.0, MOST)
 
 VISCOUS_SCALE, COULOMB_SCALE = (0.9, 0.9, 0.8, 0.9, 0.9, 0.9), (0.8, 0.8, 0.7, 0.8, 0.8, 0.8)
-"""Of direct_torque (URScript manual)."""
+"""Friction scales of direct_torque, if a program gives none (URScript manual)."""
 
 
 def target(value: Value) -> tuple[float, ...] | PoseValue:
-    """Joint angles, or a pose."""
+    """Check that a value is joint angles or a pose. Raises Misuse: it is not."""
     if type(value) is PoseValue:
         return pose(value)
     if type(value) is tuple:
@@ -68,13 +68,13 @@ class Placed(NamedTuple):
 
 
 def placed(x: PoseValue) -> Placed:
-    """Of a pose of the language."""
+    """The pose of a script, as the arm takes it."""
     return Placed((x[0], x[1], x[2]), quaternion(tuple(x[3:])))
 
 
 @contextmanager
 def controlling(arm: ArmSide) -> Iterator[None]:
-    """A thread of the program moves the arm. Raises Misuse: another one does (URScript manual, Threads)."""
+    """A thread of the program moves the arm. Raises Misuse: another thread moves it (URScript manual, Threads)."""
     arm.take()
     try:
         yield
@@ -160,7 +160,7 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _goal(robot: RobotSide, value: Value) -> Value:
-    """Of an optimove: a frame of the world model, or a pose in one, as a pose in the base."""
+    """Goal of an optimove, as a pose in the base: from a frame of the world model, or from a pose in such a frame."""
     world = robot.memory.world
     if type(value) is str:
         return world.at(value)
@@ -170,7 +170,7 @@ def _goal(robot: RobotSide, value: Value) -> Value:
 
 
 def for_ticks(arm: ArmSide, move: ScriptedMove, count: int) -> Doing:
-    """Do a motion that takes so many ticks, whatever becomes of it."""
+    """Ask for a motion and wait for `count` ticks, even if the motion ends earlier or later."""
     with controlling(arm):
         arm.ask(move)
         for _ in range(count):
@@ -178,7 +178,7 @@ def for_ticks(arm: ArmSide, move: ScriptedMove, count: int) -> Doing:
 
 
 def of_streams(robot: RobotSide) -> Iterator[Builtin]:
-    """servoj, servoc, speedj, speedl: commands that are given again and again."""
+    """servoj, servoc, speedj, speedl: streamed commands."""
 
     arm = Kinematics(robot)
 
@@ -188,7 +188,7 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     told: set[str] = set()  # parameters that were limited
 
     def limited(name: str, value: float, allowed: tuple[float, float]) -> float:
-        """A number within its range; people are told once where it was not."""
+        """A number, limited to its range; the first time that it is limited, a line tells the user."""
         found = min(max(value, allowed[0]), allowed[1])
         if found != value and name not in told:
             told.add(name)
@@ -206,7 +206,7 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         return for_time(ServoTool(position=position, quaternion=turned, acceleration=a, speed=v, blend=r), 0.0)
 
     def until_reached(move: SpeedJoints | SpeedTool) -> Doing:
-        """Without a time, until the speed is there."""
+        """Move for the given time; without a time, until the speed is reached."""
         if move.time > 0.0:
             yield from for_time(move, move.time)
             return
@@ -236,7 +236,7 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         Taken("gain", number, 300.0),
         physical=True,
     )
-    a, t = Taken("a", ZERO_UP), Taken("t", ZERO_UP, 0.0)  # without acceleration a speed stays: clients' splines do so
+    a, t = Taken("a", ZERO_UP), Taken("t", ZERO_UP, 0.0)  # a = 0 keeps the speed; some clients send splines in that way
     blend = Taken("r", ZERO_UP, 0.0)
     yield builtin(
         "servoc", servoc, Taken("pose", target), Taken("a", POSITIVE, 1.2), Taken("v", POSITIVE, 0.25), blend, physical=True
@@ -250,7 +250,7 @@ def of_torques(robot: RobotSide) -> Iterator[Builtin]:
     told: list[str] = []
 
     def direct_torque(torque: Value, viscous: Value, coulomb: Value, compensated: Value) -> Doing:
-        if type(viscous) is bool:  # the argument that was second before there were scales
+        if type(viscous) is bool:  # friction_comp was the second argument in versions without scales
             viscous, compensated = None, viscous
         if compensated is not None and not told:
             told.append("direct_torque(): friction_comp is deprecated, use viscous_scale and coulomb_scale")

@@ -1,4 +1,4 @@
-"""Functions of the language that this robot has not, each with the reason: a program that calls one ends there."""
+"""Functions of the language that this robot does not have, each with the reason. A program that calls one ends there."""
 
 from collections.abc import Iterator
 
@@ -30,7 +30,7 @@ NOT_THERE = {
     "set_mass_properties": "frames have no mass here; use set_target_payload()",
     "set_payload_from_attached_frames": "frames have no mass here; use set_target_payload()",
 }
-"""Why a program cannot call it."""
+"""Why a program cannot call a function, by the function's name."""
 
 
 def of_what_is_not_there() -> Iterator[Builtin]:

@@ -1,4 +1,4 @@
-"""Functions that tell what the arm measures, where it is and where it could be (URScript manual, module internals)."""
+"""Functions of measured values and of kinematics (URScript manual, module internals)."""
 
 import math
 from collections import deque
@@ -33,13 +33,13 @@ from sim.rigid_body.dynamics import Dynamics
 Array = NDArray[np.float64]
 
 SEARCH = 300
-"""What a step of a search for joint angles counts as, in steps of the evaluator."""
+"""Cost of one step of the search for joint angles, in evaluator steps."""
 
 OF_MODEL = 100
-"""What a look at the arm's model counts as, likewise."""
+"""Cost of one use of the arm's model, in evaluator steps."""
 
 OF_ARRAY = 12
-"""What a look at one of its arrays counts as, likewise."""
+"""Cost of one use of an array of values, in evaluator steps."""
 
 STEADY = 0.01
 """Joint speed below which the arm counts as steady [rad/s]."""
@@ -49,7 +49,7 @@ FLANGE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Kinematics:
-    """Forward and inverse, of the arm that the controller believes in."""
+    """Forward and inverse kinematics of the controller's model of the arm."""
 
     def __init__(self, robot: RobotSide) -> None:
         self._robot = robot
@@ -67,7 +67,7 @@ class Kinematics:
         return PoseValue((*(p + R @ at).tolist(), *rotation_vector(R @ R_FT).tolist()))
 
     def inverse(self, x: PoseValue, near: tuple[float, ...], tcp: tuple[float, ...] | None) -> tuple[float, ...] | None:
-        """Joint angles for a pose of the tool centre point, the nearest that steps from `near` lead to; None: none is found."""
+        """Joint angles for a pose of the tool centre point, found by steps from `near` first; None: no angles are found."""
         simulation = self._robot.simulation
         at, R_FT = _placed(self.tcp if tcp is None else tcp)
         p, R = _placed(x)
@@ -112,7 +112,7 @@ def _newton(dynamics: Dynamics, target: tuple[Array, Array], q: Array) -> Array 
 
 
 def of_measurement(robot: RobotSide) -> Iterator[Builtin]:
-    """What the arm measures and is asked to do."""
+    """Measured values of the arm, and its targets."""
     record = robot.record
     read = record.get
 
@@ -157,7 +157,7 @@ def of_measurement(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def of_history(robot: RobotSide, history: deque[tuple[float, ...]]) -> Iterator[Builtin]:
-    """What the joints' angles were; `history` has the newest first."""
+    """Earlier joint angles; `history` has the newest first."""
 
     def before(steps: int) -> Value:
         if steps < len(history):
@@ -251,7 +251,7 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _tool_point(value: Value) -> tuple[float, ...] | None:
-    """A pose in F; a name, or None, is the tool centre point in use."""
+    """A pose in F as numbers; for a name or None, None: the tool centre point in use."""
     return None if value is None or type(value) is str else pose(value)
 
 
@@ -261,7 +261,7 @@ def _tuple(value: Value) -> Value:
 
 
 def _within(robot: RobotSide, arm: Kinematics, x: Value) -> bool:
-    """Whether a posture, or a pose, is in reach; walls are for hands that guide, and are not asked."""
+    """Whether a posture, or a pose, is in reach. Walls do not count here: they are for hand guiding."""
     q = arm.inverse(pose(x), _tuple(robot.record.get("target_q")), None) if type(x) is PoseValue else numbers(6)(x)
     ends = robot.simulation.arm.limits.ends
     return q is not None and all(low <= angle <= high for angle, (low, high) in zip(q, ends, strict=True))

@@ -1,4 +1,4 @@
-"""Functions that set the robot up, and how it gives way: payload, tool, sensor, stops, guiding, force (URScript manual)."""
+"""Functions that set up the robot and its compliance: payload, tool, sensor, stops, hand guiding, force (URScript manual)."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -27,7 +27,7 @@ from pendant.motion.script_requests import ForceMode, Guided
 from pendant.tick.pose import rotation
 
 OF_WISH = 30
-"""What a wish to be guided by hand counts as, beyond a short function's steps of the evaluator."""
+"""Cost of a request for hand guiding, in evaluator steps."""
 
 
 def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
@@ -41,9 +41,9 @@ def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
         return robot.equip("payload", mass=m, cog=centre, inertia=inertia, transition=transition)
 
     def zeroed(m: float, c: Value = None) -> Doing:
-        """A robot zeroes what it tells of forces as well (URScript manual, set_payload)."""
+        """Set the payload and zero the displayed force, as a robot does (URScript manual, set_payload)."""
         yield from payload(m, c)
-        with suppress(Misuse):  # a sensor that tells nothing is no reason not to know the payload
+        with suppress(Misuse):  # the payload is set even if the sensor has no valid value
             yield from robot.arm.zero_reading()
 
     def centre(c: Value) -> Doing:
@@ -95,7 +95,7 @@ def of_free_drive(robot: RobotSide) -> Iterator[Builtin]:
 
     axes = Taken("freeAxes", items, (1, 1, 1, 1, 1, 1))
     yield builtin("freedrive_mode", free, axes, Taken("feature", any_value, "base"), cost=OF_WISH)
-    for name in ("teach_mode", "freedrive_mode_no_incorrect_payload_check"):  # the payload is checked all the same
+    for name in ("teach_mode", "freedrive_mode_no_incorrect_payload_check"):  # the payload is checked in both
         yield builtin(name, lambda: _guided(robot))
     yield builtin("end_freedrive_mode", robot.arm.leave)
     yield builtin("end_teach_mode", robot.arm.leave)
@@ -111,10 +111,10 @@ def _centre(value: Value) -> Value:
 
 
 USUAL_DAMPING = 0.025
-"""That a force mode has where a program sets none: a UR's own (ROS driver, SetForceMode)."""
+"""Damping of force mode if the program sets none: the default of a UR (ROS driver, SetForceMode)."""
 
 TURNS: tuple[Literal["to_origin", "not", "with_motion"], ...] = ("to_origin", "not", "with_motion")
-"""What the frame of force_mode does, by its type 1 to 3."""
+"""How the frame of force_mode turns, by its type 1 to 3."""
 
 
 def of_force(robot: RobotSide) -> Iterator[Builtin]:

@@ -14,13 +14,13 @@ from app.urscript.robot.robot_side import RobotSide
 REGISTERS = 48
 
 TOOL_AFTER, TOOL_FIRST = 8, 16
-"""Digital signals of the tool: behind so many in the older functions, from this bit on in the record."""
+"""Where the tool's digital signals begin: at number 8 in the older functions, at bit 16 in RTDE's record."""
 
 PLACE, BIT = Taken("address", integer), Taken("address", within(integer, 0, BITS - 1))
 
 
 def of_registers(record: FieldRecord) -> Iterator[Builtin]:
-    """General purpose registers, which RTDE shows to clients."""
+    """General purpose registers; clients read them by RTDE."""
     for way in ("input", "output"):
         whole = [record.field(f"{way}_int_register_{k}") for k in range(REGISTERS)]
         real = [record.field(f"{way}_double_register_{k}") for k in range(REGISTERS)]
@@ -93,7 +93,7 @@ def of_inputs_and_outputs(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _of_older_controllers(value: Value) -> int:
-    """A number of a digital signal as controllers before the e-Series count them: 8 and 9 are those of the tool."""
+    """Bit of a digital signal from its number in controllers before the e-Series: 8 and 9 are signals of the tool."""
     number_ = within(integer, 0, 9)(value)
     return number_ if number_ < TOOL_AFTER else TOOL_FIRST + number_ - TOOL_AFTER
 

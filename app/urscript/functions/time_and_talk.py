@@ -1,4 +1,4 @@
-"""Functions that let time pass, and those that tell people something (URScript manual, module internals)."""
+"""Functions that let time pass, and functions that show something to users (URScript manual, module internals)."""
 
 from collections.abc import Generator, Iterator
 from functools import partial
@@ -34,7 +34,7 @@ def of_time(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def of_talk(robot: RobotSide) -> Iterator[Builtin]:
-    """textmsg, popup and what asks people."""
+    """textmsg, popup, and questions to users."""
 
     def told(first: Value, second: Value) -> None:
         robot.say((shown(first) + shown(second))[:LONGEST_TEXT])

@@ -1,4 +1,4 @@
-"""The laboratory: scenarios, the clock, the hand, and what is done to the true arm, its payload and its sensors."""
+"""The laboratory: scenarios, the clock, the hand, and changes of the true arm, its payload and its sensors."""
 
 from collections.abc import Callable
 from typing import Any
@@ -20,11 +20,11 @@ from sim.exchange.snapshot import Snapshot
 from sim.plant.changes import AttachPayload, DriveGripper, DropPayload, FrictionChange, SensorFault, Temperature
 
 ROOM = 25.0
-"""Temperature of the joints that the slider starts with [°C]."""
+"""Temperature of the joints at which the slider starts [°C]."""
 
 
 def gripped(snapshot: Snapshot) -> list[tuple[str, str]]:
-    """What a gripper does, for people."""
+    """State of the gripper: names and texts for the page."""
     state = snapshot.gripper
     if state is None:
         return [("Gripper", "none: choose a tool that has one")]
@@ -113,7 +113,7 @@ class Lab:
             self.wear = gui.add_slider("Friction ×", min=0.3, max=3.0, step=0.1, initial_value=1.0)
 
     def _back(self, snapshot: Snapshot) -> None:
-        """Another scenario: every control says what it starts with."""
+        """Another scenario began: every control shows the scenario's first value."""
         starts: list[tuple[Any, float | bool]] = [
             (self.true, min(snapshot.truth_payload_mass, self._arm.payload)),
             (self.configured, min(snapshot.configured_mass, self._arm.payload)),
@@ -162,7 +162,7 @@ class Lab:
         def by_hand(control: Any, act: Callable[[], None]) -> None:
             @control.on_update
             async def _(event: viser.GuiEvent) -> None:
-                if event.client_id is not None:  # a person, and not the page bringing itself up to date
+                if event.client_id is not None:  # a person, not an update by the page itself
                     act()
 
         by_hand(self.true, lambda: desk.change(AttachPayload(load=Load(mass=float(self.true.value)))))
@@ -180,7 +180,7 @@ class Lab:
                 self._loop.desk.change(DriveGripper(command="close" if self.gripper.value == "Close" else "open"))
 
     def _fault(self) -> None:
-        """The force along z of the sensor drifts; all of its channels get noisier or fail."""
+        """Set the sensor's faults: its force along z drifts; all of its channels get noisier or fail."""
         noise, outage = float(self.noise.value), bool(self.outage.value)
         for channel, drift in ((None, 0.0), (2, float(self.drift.value))):
             fault = SensorFault(sensor="force_torque", channel=channel, drift=drift, noise_factor=noise, outage=outage)

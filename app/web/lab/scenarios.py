@@ -1,6 +1,6 @@
-"""Ready-made scenarios: bundled sessions that say what to watch, set up with one click, or shown by their own time line.
+"""Ready-made scenarios: bundled sessions that say what to watch.
 
-They are grouped by what they teach, and found by words of their titles and texts.
+A click sets a scenario up, or plays its time line. Scenarios are grouped by topic, and found by words of their titles and texts.
 """
 
 import functools
@@ -56,7 +56,7 @@ TOPICS = {
         *("control-current-limit", "network"),
     ),
 }
-"""What the scenarios teach, by the names of their files."""
+"""Topics of the scenarios: names of the scenarios' files."""
 
 
 @functools.cache
@@ -67,7 +67,7 @@ def scenarios() -> dict[str, Session]:
 
 
 class Scenarios:
-    """The scenarios' part of the laboratory; there may be none for an arm."""
+    """The scenarios' part of the laboratory; an arm may have no scenarios."""
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop = loop
@@ -96,7 +96,7 @@ class Scenarios:
             self._begin(play=self.begin.value == "Play")
 
     def found(self) -> dict[str, list[str]]:
-        """Titles by topic, of those that are asked for."""
+        """Titles by topic, of the scenarios that fit the search and the chosen topic."""
         words = self.search.value.casefold().split()
         chosen: dict[str, list[str]] = {}
         for title, name in self._names.items():

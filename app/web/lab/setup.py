@@ -1,4 +1,4 @@
-"""What is set up before the arm is switched on: arm, mounting, tool, world, seed, mismatch."""
+"""Set-up of the laboratory, made before the arm is switched on: arm, mounting, tool, world, seed, mismatch."""
 
 import math
 from collections.abc import Awaitable, Callable
@@ -47,7 +47,7 @@ class LabSetup:
             self._begin(Prepared(self._arm, self.chosen(), self._loop.settings, None, "the page"))
 
     def offer_arms(self, names: tuple[str, ...], change: Callable[[str], Awaitable[None]]) -> None:
-        """Have these arms to choose from; `change` goes over to one."""
+        """Offer these arms; `change` changes to the chosen arm."""
         self._change_arm = change
         self.arm.options = names if self._arm.name in names else (self._arm.name, *names)
         self.arm.value = self._arm.name
@@ -62,7 +62,7 @@ class LabSetup:
         self._loop.begin(lambda: simulate(prepared))
 
     def chosen(self) -> Scenario:
-        """What the controls ask for; what they leave is as in the running scenario."""
+        """The scenario that the controls ask for. What no control changes stays as in the running scenario."""
         now, fitting = self._loop.scenario, self._loop.latest().decision.fitting
         mounting = now.mounting if self.mounting.value == AS_IS else MOUNTINGS[self.mounting.value]
         tilt = math.radians(float(self.tilt.value))

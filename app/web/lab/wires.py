@@ -1,4 +1,4 @@
-"""What is wired to the robot: safety and digital inputs as switches of the laboratory, and its digital outputs."""
+"""Wiring of the robot: safety and digital inputs as switches of the laboratory, and the digital outputs."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -21,7 +21,7 @@ LEVELS = {
     "Safeguard open": (Command.SAFEGUARD_OPEN, Command.SAFEGUARD_CLOSED),
     "Reduced mode": (Command.REDUCED_ON, Command.REDUCED_OFF),
 }
-"""Safety inputs, with what they command when switched on and off."""
+"""Safety inputs, with their commands when switched on and off."""
 
 HINT = "Settings, signals: which input enters free-drive, which leaves it"
 
@@ -33,7 +33,8 @@ class Wires:
     Args:
         gui: of the page.
         loop: the running simulation.
-        interfaces: whose image of inputs and outputs its clients write, too; None: a program alone switches outputs.
+        interfaces: the robot's network interfaces; their clients can write inputs and outputs, too. None: only programs switch
+            outputs.
     """
 
     def __init__(self, gui: viser.GuiApi, loop: Running, interfaces: RobotInterfaces | None) -> None:
@@ -50,7 +51,7 @@ class Wires:
             _by_hand(control, self._wires(number))
 
     def show(self, snapshot: Snapshot) -> bool:
-        """Show the levels and what uses them; True if anything changed."""
+        """Show the levels and their use; True if anything changed."""
         high, settings, names = self._loop.desk.high, self._loop.settings, self.names()
         changed = [_bring(control, "value", number in high) for number, control in enumerate(self.digital)]
         changed += [_bring(control, "label", _label(number, settings, names)) for number, control in enumerate(self.digital)]
@@ -89,7 +90,7 @@ def _label(number: int, settings: Settings, names: Mapping[str, str]) -> str:
 def _by_hand(control: Any, act: Callable[[], None]) -> None:
     @control.on_update
     async def _(event: viser.GuiEvent) -> None:
-        if event.client_id is not None:  # a person, and not the page bringing itself up to date
+        if event.client_id is not None:  # a person, not an update by the page itself
             act()
 
 

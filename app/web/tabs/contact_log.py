@@ -3,7 +3,9 @@
 import csv
 import io
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 import viser
@@ -68,6 +70,7 @@ COLUMNS = (
     "posture",
     "action",
 )
+"""Columns of the contact log as a file; those on the page are `TABLE`."""
 METRES_PER_NEWTON, METRES_PER_ACCELERATION = 0.006, 0.03  # the latter for 1 m/s²
 SHORTEST, LONGEST = 0.05, 0.25
 """Length of an arrow [m]."""
@@ -86,7 +89,7 @@ class Contacts:
         self.detects = gui.add_checkbox("Detection", loop.settings.contact.on, hint="Of changes in contact")
         self.note = Html(gui)
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Mark", choices(0))
-        self.table = Html(gui, svg.contacts(()))
+        self.table = Html(gui, _shown(()))
 
         @self.choice.on_update
         async def _(_: viser.GuiEvent) -> None:
@@ -120,7 +123,7 @@ class Contacts:
             self._count += 1
             self._log.append((self._count, event))
         if found:
-            self.table.show(svg.contacts(_row(number, event) for number, event in list(reversed(self._log))[:SHOWN]))
+            self.table.show(_shown(islice(reversed(self._log), SHOWN)))
             self.choice.options = choices(self._count)
             self.export.disabled = False
         return any([self._mark(snapshot), self._say(), bool(found)])
@@ -221,14 +224,48 @@ def _kind(event: Event) -> str:
     return HITS.get(event.kind) or event.kind.value.removeprefix(MARKED)
 
 
-def _row(number: int, event: Event) -> tuple[str, ...]:
-    """A row of the table: number, time, what, part, place of the tool in B, speed, force with its main direction, delay."""
-    values = event.values
-    place = " ".join(f"{1000.0 * float(values[axis]):.0f}".replace("-", "−") for axis in "xyz")
-    force, delay = f"{float(values['force']):.0f}", "–"
-    if event.kind not in HITS:
-        along = max("xyz", key=lambda axis: abs(float(values[f"f{axis}"])))
-        force += f" {'+' if float(values[f'f{along}']) >= 0.0 else '−'}{along}"
-        delay = f"{1000.0 * float(values['steps']) * TICK:.0f}"
-    time = f"{event.tick / TICK_RATE:.2f}"
-    return (f"{number}", time, _kind(event), str(values["part"]), place, f"{float(values['speed']):.0f}", force, delay)
+def _place(event: Event) -> str:
+    return " ".join(f"{1000.0 * float(event.values[axis]):.0f}".replace("-", "−") for axis in "xyz")
+
+
+def _force(event: Event) -> str:
+    """The force; of a change in contact with its main direction."""
+    values, force = event.values, f"{float(event.values['force']):.0f}"
+    if event.kind in HITS:
+        return force
+    along = max("xyz", key=lambda axis: abs(float(values[f"f{axis}"])))
+    return f"{force} {'+' if float(values[f'f{along}']) >= 0.0 else '−'}{along}"
+
+
+def _delay(event: Event) -> str:
+    return "–" if event.kind in HITS else f"{1000.0 * float(event.values['steps']) * TICK:.0f}"
+
+
+class ContactColumn(NamedTuple):
+    """A column of the table."""
+
+    head: str
+    hint: str | None  # told when the pointer rests on the head
+    cell: Callable[[int, Event], str]  # of a contact's number and event
+
+
+TABLE = (
+    ContactColumn("", None, lambda number, _: f"{number}"),
+    ContactColumn("s", "Time", lambda _, event: f"{event.tick / TICK_RATE:.2f}"),
+    ContactColumn(
+        "what",
+        "A change in contact; a collision, or something that held the arm, which stopped it",
+        lambda _, event: _kind(event),
+    ),
+    ContactColumn("part", "Of the arm", lambda _, event: str(event.values["part"])),
+    ContactColumn("tool at, mm", "Tool centre point in the base frame", lambda _, event: _place(event)),
+    ContactColumn("mm/s", "Speed at the contact", lambda _, event: f"{float(event.values['speed']):.0f}"),
+    ContactColumn("N", "Force, and its main direction where that is known", lambda _, event: _force(event)),
+    ContactColumn("ms", "From the first sign to the decision, where that is known", lambda _, event: _delay(event)),
+)
+"""Columns of the contact log on the page; those of its file are `COLUMNS`."""
+
+
+def _shown(log: Iterable[tuple[int, Event]]) -> str:
+    rows = (tuple(column.cell(number, event) for column in TABLE) for number, event in log)
+    return svg.contacts(rows, {column.head: column.hint for column in TABLE})

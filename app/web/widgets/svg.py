@@ -249,29 +249,16 @@ def _log_line(row: LogLine) -> str:
     )
 
 
-def contacts(rows: Iterable[tuple[str, ...]]) -> str:
-    """The contact log: number, time, what, part, place of the tool, speed, force, delay. A press on a row chooses its contact."""
+def contacts(rows: Iterable[tuple[str, ...]], heads: Mapping[str, str | None] = {}) -> str:
+    """The contact log: rows below `heads` with their hints. A press on a row chooses the contact that its first cell numbers."""
     lines = "".join(
         f'<tr tabindex="0" data-pd-pick="contact {escape(row[0])}">{"".join(f"<td>{escape(cell)}</td>" for cell in row)}</tr>'
         for row in rows
     )
     if not lines:
         return '<p class="pd-empty">No contact yet</p>'
-    heads = "".join(f"<th{_hint(hint)}>{head}</th>" for head, hint in CONTACT_HEADS.items())
-    return f'<div class="pd-contacts"><table><tr>{heads}</tr>{lines}</table></div>'
-
-
-CONTACT_HEADS = {
-    "": None,
-    "s": "Time",
-    "what": "A change in contact; a collision, or something that held the arm, which stopped it",
-    "part": "Of the arm",
-    "tool at, mm": "Tool centre point in the base frame",
-    "mm/s": "Speed at the contact",
-    "N": "Force, and its main direction where that is known",
-    "ms": "From the first sign to the decision, where that is known",
-}
-"""Columns of the contact log, and what is told of each when the pointer rests on it."""
+    cells = "".join(f"<th{_hint(hint)}>{head}</th>" for head, hint in heads.items())
+    return f'<div class="pd-contacts"><table><tr>{cells}</tr>{lines}</table></div>'
 
 
 def limits(rows: Iterable[tuple[str, ...]]) -> str:
