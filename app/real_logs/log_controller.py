@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 
 MOVING = 0.01
 """Speed of a joint from which the arm moves, so that the force of a collision counts and not that of clamping [rad/s]."""
+STOPPED = 5.0
+"""So long a robot of UR is not reset after a protective stop (its dashboard's `unlock protective stop`): in a log, where the arm
+goes on, what rises or ends in this time is of the same stop [s]."""
 SIDES = 12
 """Numbers of accelerometers and gyros on both sides of the flange sensor: no log has them."""
 
@@ -85,6 +88,7 @@ class LogController:
         self._rotor = np.array(motors.rotor_inertia) * constants.rotor_inertia
         self._per_ampere = np.array(motors.gear) * np.array(motors.torque_constant) * constants.motor_constant
         self._sample = _sample(arm.n)
+        self._stopped_until = -math.inf  # of the log's times [s]
 
     @property
     def friction(self) -> Array:
@@ -146,13 +150,13 @@ class LogController:
             LogNotice(t, f"contact {each.change.value}", each.part, math.hypot(*each.force), each.rule)
             for each in self._monitor.step(estimate, settings.contact, mode, on=True)
         ]
-        if not planned:
+        if not planned or t < self._stopped_until:
             self._collisions.rest()
             return told
         moves = max(map(abs, estimate.qd.tolist())) > MOVING
         hit = self._collisions.step(estimate, settings.collision, moves=moves)
         if hit is not None:
-            self._collisions.rest()  # the arm would have been stopped, and this force is there when it is reset
+            self._stopped_until = t + STOPPED
             values = hit.values
             told.append(LogNotice(t, "collision", str(values["part"]), float(values["force"]), f"over {values['limit']:.0f} N"))
         return told

@@ -138,6 +138,15 @@ class TestPushed:
         assert 4.0 < first["contact gained"] < 4.2
         assert found.told[0].t > 4.0  # 100 N are a collision, too, and nothing is told before
 
+    def test_a_collision_that_stops_the_arm_is_told_once_however_it_goes_on(self):
+        """The force rises on after it was told, and ends while a robot would still stand; the next one comes after a reset."""
+        values = columns(seconds=12.0, rate=125.0)
+        since = values["t"][:, None] - [4.0, 10.0]
+        torque = 60.0 * ((since > 0.0) & (since < 0.6)).any(axis=1)
+        values["current"][:, 2] += torque / (ARM.motors.gear[2] * ARM.motors.torque_constant[2])
+        told = [each.t for each in hold_against(log_of(values), prepared(), quiet).told if each.what == "collision"]
+        assert [round(t, 1) for t in told] == [4.0, 10.0]
+
 
 class TestSaid:
     def test_that_gaps_leave_nothing(self):
