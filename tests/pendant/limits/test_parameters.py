@@ -199,7 +199,7 @@ def test_a_linear_limit_falls_along_gravity_as_well(name: str, share: float) -> 
 
 
 def test_no_joint_is_refused_for_what_its_encoder_makes_of_its_torque() -> None:
-    """Of rated 100 N·m each joint may have 4, of which the coarse encoder of joint 1 makes 7; a quarter of the load comes upon it."""
+    """Of rated 100 N·m each joint may have 4, and a quarter of its load; a coarse encoder makes 7."""
     value = estimate(tau_ext=[5.0, 7.5, 0.0, 0.0, 0.0, 0.0], tau_J=[0.0, 10.0, 0.0, 0.0, 0.0, 0.0])
     rated = (100.0,) * 6
     assert PARAMETERS["joint_torque"].read(view(value, scale=rated, share=0.25), 0.04) == (5.0, "base", 4.0)
