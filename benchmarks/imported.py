@@ -56,6 +56,8 @@ SENSES_TORQUE = 0.05
 
 WAY, WALL, BEYOND = 0.15, 0.06, 0.010  # of the hand; to the wall; beyond it at most [m]
 GAP, BEHIND, TABLE = 0.06, 0.06, 2e4  # before the table and behind its surface [m]; its stiffness [N/m]
+BLOCK = 0.1
+"""Side of the block that stands for a table [m]: no larger, for some of the arm may be below its flange."""
 SLOW, FAST = 0.05, 0.25  # onto the table [m/s]
 SOON = 1.0  # after the touch it is told [s]
 
@@ -240,7 +242,8 @@ def _touch(case: Case, arm: Arm) -> Session:
     velocity = moved @ qd
     size, speed = float(np.linalg.norm(velocity)), scale * (SLOW if case.what == "table" else FAST)
     towards = velocity / size
-    table = box_across("table", place + (GAP * scale + rod.radius) * towards, towards, (0.4, 0.4, 0.4), stiffness=TABLE)
+    side = BLOCK * scale
+    table = box_across("table", place + (GAP * scale + rod.radius) * towards, towards, (side, side, side), stiffness=TABLE)
     share = min(float(np.max(np.abs(qd) * speed / size / np.array(arm.limits.speed))), 1.0)
     goal = q + qd * (scale * (GAP + BEHIND) / size)
     until = Until(change="gained") if case.what == "table" else None
