@@ -15,6 +15,7 @@ import numpy as np
 
 from app.arm_import.import_files import written
 from app.arm_import.importing import imported
+from app.files.bad_input import BadInput
 from app.files.library import load_arm
 from app.runs.runner import RunOutcome, run, simulate
 from app.session.actions import Hold, Lean, LoadProgram, Press, Release, Tap
@@ -58,6 +59,7 @@ WAY, WALL, BEYOND = 0.15, 0.06, 0.010  # of the hand; to the wall; beyond it at 
 GAP, BEHIND, TABLE = 0.06, 0.06, 2e4  # before the table and behind its surface [m]; its stiffness [N/m]
 BLOCK = 0.1
 """Side of the block that stands for a table [m]: no larger, for some of the arm may be below its flange."""
+WAYS = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
 SLOW, FAST = 0.05, 0.25  # onto the table [m/s]
 SOON = 1.0  # after the touch it is told [s]
 
@@ -224,6 +226,18 @@ def _follow(case: Case, arm: Arm) -> Session:
 
 
 def _touch(case: Case, arm: Arm) -> Session:
+    """Down, or else the first way on which the block is not where some of the arm is."""
+    for way in WAYS:
+        session = _touching(case, arm, np.array(way))
+        try:
+            simulate(prepare(session, case.what))
+        except BadInput:
+            continue
+        return session
+    raise ValueError(f"{arm.name}: no way leads from its home posture to a block")
+
+
+def _touching(case: Case, arm: Arm, way: np.ndarray) -> Session:
     scale = arm.reach / USUAL_REACH
     length = 0.1 * scale
     rod = ToolModel(
@@ -238,7 +252,7 @@ def _touch(case: Case, arm: Arm) -> Session:
     q, place = np.array(arm.chain.home), tip(probe)
     _, R, jacobian = probe.dynamics.update(q)
     moved = jacobian[:3] + np.cross(jacobian[3:].T, R @ probe.tcp).T
-    qd = moved.T @ np.array([0.0, 0.0, -1.0])
+    qd = moved.T @ way
     velocity = moved @ qd
     size, speed = float(np.linalg.norm(velocity)), scale * (SLOW if case.what == "table" else FAST)
     towards = velocity / size
