@@ -105,7 +105,7 @@ def hand(arm: Arm) -> float:
 def measure_case(case: Case) -> Result:
     """Run the session and judge it."""
     arm = load_arm(case.arm)
-    session = _session(case, arm)
+    session = session_of(case, arm)
     prepared = prepare(session, case.what)
     device, places, touched = simulate(prepared), [], [0]
 
@@ -117,7 +117,7 @@ def measure_case(case: Case) -> Result:
     outcome = run(session, prepared, device, None, see=see)
     unmet = [f"{verdict.expected}: {verdict.seen}" for verdict in outcome.verdicts if not verdict.passed]
     if case.what in TOLD:
-        unmet += _untold(outcome, TOLD[case.what], touched[0])
+        unmet += untold(outcome, TOLD[case.what], touched[0])
     way = np.array(places[round(2.0 / TICK) :])
     drift = float(np.linalg.norm(way - way[0], axis=1).max())
     if case.what == "hold" and drift > DRIFT:
@@ -129,7 +129,7 @@ TOLD = {"table": (Kind.CONTACT_GAINED,), "hit": (Kind.COLLISION, Kind.PATH_LEFT)
 """The events that tell of a touch."""
 
 
-def _untold(outcome: RunOutcome, kinds: tuple[Kind, ...], touched: int) -> list[str]:
+def untold(outcome: RunOutcome, kinds: tuple[Kind, ...], touched: int) -> list[str]:
     """Why a touch in that tick, 0 for none, was not told soon after, or was told before."""
     if not touched:
         return ["nothing was touched"]
@@ -139,7 +139,7 @@ def _untold(outcome: RunOutcome, kinds: tuple[Kind, ...], touched: int) -> list[
     return [] if 0 <= told[0] * TICK <= SOON else [f"told {told[0] * TICK:.3f} s after the touch"]
 
 
-def _session(case: Case, arm: Arm) -> Session:
+def session_of(case: Case, arm: Arm) -> Session:
     """The session of a case."""
     return MAKERS[case.what](case, arm)
 
@@ -303,7 +303,7 @@ def measure(report: Report) -> None:
     named = os.environ.get(FOLDER, "")
     with tempfile.TemporaryDirectory() as scratch:
         paths = arms_in(Path(named).resolve()) if named else small_arms(Path(scratch))
-        seeds = range(report.options.seed, report.options.seed + (5 if report.options.full else 1))
+        seeds = range(report.options.seed, report.options.seed + (3 if report.options.full else 1))
         found = spread(measure_case, [Case(str(path), what, seed) for path in paths for what in WHATS for seed in seeds])
         for path in paths:
             _rows(report, load_arm(path), [each for each in found if each.case.arm == str(path)])
