@@ -12,7 +12,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from app.files.checked import BadInput, load, parse
-from app.files.library import robots, tools
+from app.files.library import load_arm, own_robots, robots, tools
 from app.files.taught_program import Lesson
 from app.files.yaml_text import parsed, read
 from app.session.prepare import Prepared, prepare
@@ -242,5 +242,16 @@ def usual_folder() -> Path:
 
 
 def keeper_for(arm: Arm, folder: Path) -> Keeper | None:
-    """The keeper of an arm; None: the arm comes from a file, and may be another one next time."""
-    return Keeper(folder, arm.name) if arm.name in robots() else None
+    """The keeper of an arm that goes by its name: a shipped one, or one of the user's own.
+
+    None: the arm comes from a file elsewhere, and may be another one next time.
+    """
+    return Keeper(folder, arm.name) if arm.name in robots() or _is_own(arm) else None
+
+
+def _is_own(arm: Arm) -> bool:
+    """Whether this is the user's own arm of its name, and no other arm that is called so."""
+    try:
+        return arm.name in own_robots() and load_arm(arm.name) == arm
+    except BadInput:
+        return False

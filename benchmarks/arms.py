@@ -90,11 +90,11 @@ def rubs(name: str, part: Part, speed: float) -> float:
 
     A hand does not get less to do for a light arm. The wrist turns in place, so its speed is an angular one [rad/s].
     """
-    own, usual = (_friction(load(each), part, speed) for each in (name, USUAL))
+    own, usual = (friction_at(load(each), part, speed) for each in (name, USUAL))
     return max(own / usual, 1.0)
 
 
-def _friction(arm: Arm, part: Part, speed: float) -> float:
+def friction_at(arm: Arm, part: Part, speed: float) -> float:
     """Mean over the joints that move a part: their friction over its furthest lever [N]; of the wrist their friction [N·m]."""
     elbow = arm.chain.elbow
     upper_arm = float(np.linalg.norm(placements(arm)[2 : elbow + 1, :3, 3], axis=1).sum())

@@ -13,8 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks import arms, common, drift, free_drive_forces, realtime, recording, tick
+from app.files.library import load_arm
+from app.runs.runner import RunOutcome, simulate
+from app.session.prepare import prepare
+from benchmarks import arms, common, drift, free_drive_forces, imported, realtime, recording, tick
 from benchmarks.common import Options, Report
+from pendant.events.event import Event, Kind
 from tests.items import each_of
 
 FOLDER = Path(common.__file__).parent
@@ -293,3 +297,20 @@ def test_the_bench_of_the_recording_measures(tmp_path: Path) -> None:
     rows = {row["what"]: row["value"] for row in tried.rows}
     assert rows["its share of a tick"] > 0.0
     assert all(rows[f"session {name} with recording, median"] > 0.0 for name in recording.SESSIONS)
+
+
+def test_the_bench_of_imported_arms_has_sessions_that_can_be_run(tmp_path: Path) -> None:
+    paths = imported.small_arms(tmp_path)
+    assert imported.arms_in(tmp_path / "arms") == sorted(paths)
+    for path in paths:
+        for what in imported.WHATS:
+            session = imported.session_of(imported.Case(str(path), what, 1000), load_arm(path))
+            simulate(prepare(session, what))
+
+
+def test_a_touch_counts_as_told_soon_after_it() -> None:
+    told = RunOutcome(events=[Event(Kind.COLLISION, 120, {})])
+    assert imported.untold(told, (Kind.COLLISION,), 100) == []
+    assert imported.untold(told, (Kind.COLLISION,), 121) == ["told -0.002 s after the touch"]
+    assert imported.untold(told, (Kind.CONTACT_GAINED,), 100) == ["the touch was not told"]
+    assert imported.untold(told, (Kind.COLLISION,), 0) == ["nothing was touched"]

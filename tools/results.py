@@ -173,7 +173,7 @@ def write_summary(found: Summary, path: Path) -> None:
     """Write bars.json, a line a bar."""
     benches = ",\n".join(
         f'{{"bench": {json.dumps(each.bench)}, "size": {json.dumps(each.size)}, "bases": {json.dumps(each.bases)}, "bars": [\n'
-        + ",\n".join(json.dumps(bar, ensure_ascii=False) for bar in each.bars)
+        + ",\n".join(json.dumps(bar, ensure_ascii=False, separators=(",", ":")) for bar in each.bars)
         + "\n]}"
         for each in found.benches
     )

@@ -8,6 +8,7 @@ from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
 
 Array = NDArray[np.float64]
+Faces = NDArray[np.int64]
 
 MOST_TRIANGLES = 12_000
 """Of the picture of a link: all links of an arm together load in a browser in a second or two."""
@@ -49,23 +50,29 @@ def simplified(mesh: trimesh.Trimesh, most: int) -> trimesh.Trimesh:
     """
     if len(mesh.faces) <= most:
         return mesh
-    size = max(float(np.ptp(mesh.bounds, axis=0).max()), 1e-6)
+    vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)  # plain: trimesh hashes its own at each look
+    low, high = mesh.bounds
+    size = max(float((high - low).max()), 1e-6)
     cells = 2.0 * np.sqrt(most)
     while True:
-        found = _clustered(mesh, size / cells)
+        found = _clustered(vertices, faces, low, size / cells)
         if len(found.faces) <= most:
             return found
         cells *= max(0.5, min(0.9, float(np.sqrt(most / len(found.faces)))))
 
 
-def _clustered(mesh: trimesh.Trimesh, cell: float) -> trimesh.Trimesh:
-    grid = np.floor((mesh.vertices - mesh.bounds[0]) / cell).astype(np.int64)
-    key = (grid[:, 0] << 42) + (grid[:, 1] << 21) + grid[:, 2]
-    _, place = np.unique(key, return_inverse=True)
+def _clustered(vertices: Array, corners: Faces, low: Array, cell: float) -> trimesh.Trimesh:
+    grid = np.floor((vertices - low) / cell).astype(np.int64)
+    _, place = np.unique(_key(grid), return_inverse=True)
     counts = np.bincount(place)
-    means = np.column_stack([np.bincount(place, weights=mesh.vertices[:, i]) / counts for i in range(3)])
-    faces = place[mesh.faces]
+    means = np.column_stack([np.bincount(place, weights=vertices[:, i]) / counts for i in range(3)])
+    faces = place[corners]
     whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     faces = faces[whole]
-    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
+    _, first = np.unique(_key(np.sort(faces, axis=1)), return_index=True)
     return trimesh.Trimesh(means, faces[np.sort(first)], process=False)
+
+
+def _key(rows: Faces) -> Faces:
+    """One number for each row of three below 2^21 (m, 3): it is sorted sooner than rows are."""
+    return (rows[:, 0] << 42) + (rows[:, 1] << 21) + rows[:, 2]

@@ -22,6 +22,9 @@ HEAVIEST = 0.5
 USUAL = 0.25
 """The same, where the file says no torques."""
 
+LITTLE = 0.05
+"""The same, from which down a file's torques are told to bear little more than the arm."""
+
 LEAST_SHARE = 0.2
 """Rated torque of a joint that bears little, over the largest: the wrists of cobots have a fifth."""
 
@@ -102,6 +105,11 @@ def ratings(said: Sequence[float | None], payload: float | None, weighed: Weight
             f"payload: what two thirds of each joint's torque bear in {POSTURES} postures beside own weight, at most half of the "
             f"{weighed.moving:.3g} kg that move"
         )
+        if payload < LITTLE * weighed.moving:
+            told.append(
+                f"payload: {payload:.2g} kg, as the file's torques bear little more than the arm itself: give its maker's "
+                "payload and limits.torque by --measured"
+            )
     return Ratings(torque, believed, max(float(f"{payload:.2g}"), 0.01), told)
 
 

@@ -14,11 +14,17 @@ IMPORT_EXAMPLES = example(
     "pendant import panda.urdf --flange panda_link8",
     "pendant import xarm7.xml --out arms --measured my-values.yaml",
     "pendant import robots/arm.urdf --within . --drive servo",
+    "pendant import panda_description",
 )
 
 
 def import_(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="The description of the arm: URDF or MJCF.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="The arm's URDF or MJCF, a folder that holds one, or a name of robot-descriptions, if installed."
+        ),
+    ],
     *,
     flange: Annotated[
         str | None, typer.Option(metavar="LINK", help="Link or site that tools are mounted on; what moves beyond it is locked.")
@@ -39,12 +45,14 @@ def import_(
     """Import an arm: chain, masses and limits as the file has them, the rest estimated by size, with pictures for the page."""
     from app.arm_import.import_files import written
     from app.arm_import.importing import imported
+    from app.arm_import.named_descriptions import named_description
     from app.files.library import own_arms
 
     if drive not in (None, "harmonic", "servo"):
         raise BadInput("--drive", "", drive, "expected harmonic or servo")
-    found = imported(file, flange=flange, name=name, drive=drive, within=within, values=measured)
-    path = written(found, file, own_arms() if out is None else out)
+    meant = named_description(file)
+    found = imported(meant.file, flange=flange, name=name, drive=drive, within=within or meant.within, values=measured)
+    path = written(found, meant.file, own_arms() if out is None else out)
     console = Console(soft_wrap=True)
     arm = found.arm
     console.print(

@@ -130,12 +130,15 @@ def _motor_current(view: Observed, base: float) -> Read:
 
 
 def _joint_torque(view: Observed, base: float) -> Read:
-    """The joint that comes nearest to its limit; its limit is the parameter's, in N·m."""
-    changes, share = list(map(sub, view.estimate.tau_ext.tolist(), view.since.torques)), view.share
+    """The joint that comes nearest to its limit; its limit is the parameter's, in N·m, and rises with the load by a share. Such a
+    limit is never less than what the encoders of a joint that nobody touches make of its torque."""
+    estimate, share = view.estimate, view.share
+    changes = list(map(sub, estimate.tau_ext.tolist(), view.since.torques))
     if share == 0.0:
         return _nearest(changes, view.scale, view, base)
-    loads = zip(view.scale, view.estimate.tau_J.tolist(), strict=True)
-    return _nearest(changes, [base * rated + share * abs(load) for rated, load in loads], view)
+    least = [base * rated for rated in view.scale]
+    loads = zip(map(max, least, estimate.tau_blur or least), estimate.tau_J.tolist(), strict=True)
+    return _nearest(changes, [limit + share * abs(load) for limit, load in loads], view)
 
 
 def _payload_force(view: Observed, base: float) -> Read:

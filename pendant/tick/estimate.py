@@ -138,6 +138,7 @@ class Estimate:
     payload_fell: bool = False  # as the joints tell, in free-drive without a valid flange sensor
     joints_feel: JointsFeel = JointsFeel.NOTHING  # there, too
     missing_mass: tuple[float, float] = (0.0, math.inf)  # payload beyond the configured one, its deviation; without sensor [kg]
+    tau_blur: tuple[float, ...] = ()  # (n,) what the output encoders make of tau_ext, at most; (): nothing is known [N·m]
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":

@@ -112,7 +112,7 @@ def _evidence(rigid, place, force, torques):
         p[k], a[k] = origin[k], 0.0
         for m in range(3):
             p[k] += R[k, m] * (start[m] + share * way[m])
-            a[k] += R[k, m] * way[m] / size
+            a[k] += R[k, m] * way[m] / size if size > 0.0 else 0.0  # a ball has no axis: it is pressed on from anywhere
     A, b, column = np.zeros((3, 3)), np.zeros(3), np.empty(3)
     for k in range(3):
         A[k, k] = 1.0 / (force * force)

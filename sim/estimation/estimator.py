@@ -10,11 +10,13 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
-from sim.arm.joint_constants import JointConstants
+from sim.arm.joint_constants import JointConstants, ripple_torque
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.estimation.joint_tracking import (
     SPEED_BANDWIDTH,
     TORQUE_BANDWIDTH,
+    angle_noise,
+    deflection_rate,
     follow,
     joint_record,
     plan,
@@ -37,6 +39,7 @@ SHIPPED = JointControl()
 _DEFLECTION = FrictionFrom.DEFLECTION  # looked up in every tick
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
+SURE = 4.0  # standard deviations of noise: one second in thirty has a tick beyond
 BENDING_BANDWIDTH = 5.0  # of a deflection that replaces a lost angle [Hz]
 
 
@@ -78,6 +81,12 @@ class Estimator:
         self._able = np.ones((3, n), dtype=bool)  # motor angle, output angle, current
         self._lost: tuple[tuple[str, int], ...] = ()
         self._smooth_bending = 1.0 - math.exp(-2.0 * math.pi * BENDING_BANDWIDTH * TICK)
+        encoders = arm.sensors.encoders
+        self._settling = -math.expm1(-deflection_rate(encoders) * TICK)  # share of a deflection a tick; 0: of fine encoders
+        self._settled: Array | None = None  # deflection in that low-pass (n,) [rad]
+        left = self._settling / (2.0 - self._settling) if self._settling else 1.0  # of the noise's variance in a deflection
+        noise = SURE * math.sqrt(left) * angle_noise(encoders) / self._compliance
+        self._blur = tuple((ripple_torque(arm) + noise).tolist())
         self._bending = np.zeros(n)  # torque that bends the spring of a joint with a lost angle [N·m]
         self._bend = np.zeros(n)  # its deflection that the believed stiffness does not explain [rad]
         self.started, self._free = False, False  # `_free`: free-drive was on in the last tick
@@ -132,6 +141,8 @@ class Estimator:
         theta, q = self._theta, self._q
         angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
         if angles is not None:
+            if self._settling:
+                angles = self._through_motor(*angles)
             if self._lost and sample.joints_valid:
                 self._back(sample)
             if not self.started:
@@ -222,6 +233,7 @@ class Estimator:
             tau_hand=self.link_hand.torque,
             tau_certain=self.link_hand.certain,
             current=self._current,
+            tau_blur=self._blur,
         )
 
     def _observe(self, sample: Sample, sensed: bool, learn: bool) -> None:
@@ -268,6 +280,13 @@ class Estimator:
         q = np.where(able[1], sample.q, sample.theta - deflection)
         spent = (fused + (1.0 - self.friction.output_share) * self.friction.total) / self._own["torque_constant"]
         return theta, q, np.where(able[2], sample.current, spent)
+
+    def _through_motor(self, theta: Array, q: Array, current: Array) -> tuple[Array, Array, Array]:
+        """With output angles that are the motors', less a deflection that is taken slowly: see `deflection_rate`."""
+        bent = theta - q
+        before = bent if self._settled is None or not self.started else self._settled
+        self._settled = before + self._settling * (bent - before)
+        return theta, theta - self._settled, current
 
     def _back(self, sample: Sample) -> None:
         """All sensors work again: replaced angles jump to the measured ones, and this makes no speed."""

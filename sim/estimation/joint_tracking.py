@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
+from sim.arm.arm_file import Encoders
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
 from sim.estimation.adaptive_friction import GATE
@@ -16,6 +17,9 @@ Array = NDArray[np.float64]
 
 SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
 TORQUE_BANDWIDTH = 20.0  # of the output angle's filter; its accelerations enter torque estimates [Hz]
+SPEED_NOISE = 0.002
+"""Standard deviation of a joint's speed that the noise of its output encoder may make [rad/s]: a fifth of `static.speed`, so that
+an arm that stands is seen to stand."""
 
 
 def tracking_gains(bandwidth: float) -> tuple[float, float, float]:
@@ -26,6 +30,36 @@ def tracking_gains(bandwidth: float) -> tuple[float, float, float]:
     """
     r = math.exp(-2.0 * math.pi * bandwidth * TICK)
     return 1.0 - r**3, 1.5 * (1.0 - r * r) * (1.0 - r) / TICK, (1.0 - r) ** 3 / (TICK * TICK)
+
+
+def noise_gains(bandwidth: float) -> tuple[float, float]:
+    """Standard deviations of a tracked angle [rad] and of its speed [rad/s] for white noise of 1 rad a tick in the measurement.
+
+    Source: variance reduction of the fading-memory filter of order two (Morrison, Introduction to Sequential Smoothing and
+    Prediction, 1969), with the pole r of `tracking_gains`:
+    (1 - r)(1 + 6 r + 16 r² + 24 r³ + 19 r⁴) / (1 + r)⁵ and (1 - r)³(13 + 50 r + 49 r²) / (2 T²(1 + r)⁵).
+    """
+    r = math.exp(-2.0 * math.pi * bandwidth * TICK)
+    angle = (1.0 - r) * (1.0 + r * (6.0 + r * (16.0 + r * (24.0 + 19.0 * r)))) / (1.0 + r) ** 5
+    speed = (1.0 - r) ** 3 * (13.0 + r * (50.0 + 49.0 * r)) / (2.0 * TICK * TICK * (1.0 + r) ** 5)
+    return math.sqrt(angle), math.sqrt(speed)
+
+
+def angle_noise(encoders: Encoders) -> float:
+    """Standard deviation of an output angle as it is read: noise and the rounding to counts [rad]."""
+    return 2.0 * math.pi / encoders.output_counts * math.sqrt(encoders.noise_counts**2 + 1.0 / 12.0)
+
+
+def deflection_rate(encoders: Encoders) -> float:
+    """How fast a measured deflection is taken [1/s] where the output encoder is too coarse to tell a speed; 0: it is not.
+
+    Such a joint's speed is that of its motor, whose encoder counts a gear's ratio more in a turn, and the output encoder tells
+    what the gear bends. So the angle that is tracked is theta - x, with the deflection theta - q in a low-pass of this rate w:
+    the encoder's share in it is its noise, sigma, times w / (s + w), and in its speed sigma·w times the filter's gain for angles.
+    """
+    sigma = angle_noise(encoders)
+    of_angle, of_speed = noise_gains(TORQUE_BANDWIDTH)
+    return 0.0 if sigma * of_speed <= SPEED_NOISE else SPEED_NOISE / (sigma * of_angle)
 
 
 class Angles(NamedTuple):

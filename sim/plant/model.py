@@ -219,7 +219,10 @@ def _add_shapes(spec: mujoco.MjSpec, arm: Arm, scenario: Scenario) -> None:
     for k, shape in enumerate(hulls(arm)):
         body = spec.body("foot" if shape.link < 0 else arm.chain.joints[shape.link])
         geom = body.add_geom(name=f"shape/{k}", type=mujoco.mjtGeom.mjGEOM_CAPSULE, contype=0, conaffinity=0)
-        geom.fromto = [*shape.start, *shape.end]
+        if shape.start == shape.end:  # MuJoCo knows no capsule of that length
+            geom.type, geom.pos = mujoco.mjtGeom.mjGEOM_SPHERE, shape.start
+        else:
+            geom.fromto = [*shape.start, *shape.end]
         geom.size[0] = shape.radius
         geom.mass = 0
     tool = scenario.tool

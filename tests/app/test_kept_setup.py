@@ -1,22 +1,26 @@
 """Set-ups as files, and what is kept over a restart."""
 
+from dataclasses import replace as replaced
 from pathlib import Path
 from typing import Any
 
 import pytest
 from msgspec.structs import replace
 
+from app.arm_import.import_files import written
+from app.arm_import.importing import imported
 from app.commands.command_options import as_kept, set_up
 from app.files.checked import BadInput, parse
-from app.files.library import load_arm, load_tool
+from app.files.library import load_arm, load_tool, own_arms
 from app.files.taught_program import Lesson, TaughtStep
 from app.kept_setup import OFTEN, Cell, CellNow, Keeper, any_cell, cell_of, handed_in, keeper_for, setup_of, text_of, usual_folder
 from app.session.prepare import prepare
-from app.session.session_file import Session, Setup, bundled, find, opened
+from app.session.session_file import FIRST_START, Session, Setup, bundled, find, opened
 from pendant.all_settings import Settings, apply
 from pendant.walls.definitions import Area
 from pendant.walls.shapes import Box
 from sim.arm.scenario import Load, table
+from tests.app.arm_import.arms_of_the_test import MJCF, laid_out
 from tests.items import each_of
 
 ARM = load_arm("ur5e")
@@ -156,6 +160,29 @@ def test_a_kept_file_that_is_damaged_is_told_of_and_left_as_it_is(
 def test_of_an_arm_from_a_file_nothing_is_kept(tmp_path: Path) -> None:
     assert keeper_for(replace(ARM, name="mine"), tmp_path) is None
     assert keeper_for(ARM, tmp_path) is not None
+
+
+def test_the_cell_of_an_imported_arm_is_kept_over_a_restart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    file = laid_out(tmp_path / "source", MJCF)
+    found = imported(file)
+    written(found, file, own_arms())
+    begun = prepare(replace(FIRST_START, robot=found.arm.name), "serve")
+    _, keeper, cell = as_kept(begun, tmp_path)
+    assert cell is None
+    assert keeper is not None
+    moved = replace(begun.scenario, posture=[0.1, -0.4, 1.0])
+    for clock, scenario in ((0.0, begun.scenario), (5.0, moved)):
+        keeper.see(now(arm=begun.arm, scenario=scenario, tools=tuple(table(scenario))), now=clock)
+    again, keeper, _ = as_kept(begun, tmp_path)
+    assert again.scenario.posture == [0.1, -0.4, 1.0]
+    assert again.arm == begun.arm
+    assert keeper is not None
+    other = written(replaced(found, arm=replace(found.arm, payload=1.0)), file, tmp_path / "elsewhere")
+    assert keeper_for(load_arm(other), tmp_path) is None, "another arm of that name"
+    keeper.path.unlink()
+    (own_arms() / found.arm.name / f"{found.arm.name}.yaml").write_text("[")
+    assert keeper_for(begun.arm, tmp_path) is None
 
 
 def test_the_usual_folder_is_where_programs_keep_their_state(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from app.arm_import.import_files import written
+from app.arm_import.importing import imported
 from app.files.checked import BadInput
+from app.files.library import own_arms, robots
 from app.files.taught_program import Lesson, TaughtStep
 from app.kept_setup import Cell, Keeper
 from app.log.live import LiveRecording
@@ -23,6 +26,7 @@ from app.session.prepare import prepare
 from app.session.session_file import Setup
 from pendant.all_settings import Settings, apply
 from sim.run.loop import Loop
+from tests.app.arm_import.arms_of_the_test import MJCF, laid_out
 from tests.app.web.raw_client import until
 
 UR5E = prepare(Setup(), "test")
@@ -149,6 +153,25 @@ def test_another_arm_begins_as_it_was_kept(loop: Loop, tmp_path: Path) -> None:
     assert (ready.prepared.settings, ready.keeper) == (Settings(), None)
     assert ServedArms(loop, LiveRecording(loop, tmp_path)).ready("ur10e", cell).cell == cell, "the page held it"
     assert ServedArms(loop, LiveRecording(loop, tmp_path)).ready("ur10e").keeper is None
+
+
+def test_an_imported_arm_is_in_the_list_and_begins_as_it_was_kept(
+    loop: Loop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    arms = ServedArms(loop, LiveRecording(loop, tmp_path), folder=tmp_path)
+    assert arms.names == tuple(robots())
+    file = laid_out(tmp_path / "source", MJCF)
+    written(imported(file), file, own_arms())
+    assert arms.names == (*robots(), "other-arm")
+    kept = Cell(setup=Setup(robot="other-arm", settings={"free_drive.period": 7.0}), taught=Lesson())
+    Keeper(tmp_path, "other-arm").keep(kept)
+    ready = arms.ready("other-arm")
+    assert ready.keeper is not None
+    assert (ready.keeper.path, ready.cell) == (tmp_path / "other-arm.yaml", kept)
+    assert set(ready.meshes) >= {"foot", "a", "b", "c"}
+    arms.bring(ready)
+    assert loop.simulation.arm.title == "Other Arm"
 
 
 @pytest.mark.parametrize("name", ["nobody", "../ur5e"])

@@ -9,6 +9,7 @@ import pytest
 
 from app.arm_import.import_files import written
 from app.arm_import.importing import Imported, imported
+from app.arm_import.ratings import Weights, ratings
 from app.files.bad_input import BadInput
 from app.files.library import load_arm, load_tool, mesh_path
 from app.web.arm_change import meshes_of
@@ -173,3 +174,13 @@ def test_arms_of_another_size_get_other_values(urdf: tuple[Path, Imported], tmp_
     assert found.arm.frictions.breakaway[0] < urdf[1].arm.frictions.breakaway[0]
     assert any("servos" in line for line in found.told)
     assert imported(laid_out(tmp_path, small, "arm.urdf"), drive="harmonic").arm.motors.gear[0] == 101.0
+
+
+def test_torques_that_bear_little_more_than_the_arm_are_told() -> None:
+    """Own weight takes 10 N·m, a kilogram 5 N·m more, and two thirds of the torque may be used."""
+    weighed = Weights(np.array([[10.0]]), np.array([[5.0]]), moving=4.0)
+    weak, strong = (ratings([torque], None, weighed, where="arm.urdf") for torque in (15.2, 18.0))
+    assert (weak.payload, strong.payload) == pytest.approx((0.027, 0.4))
+    assert "give its maker's payload and limits.torque by --measured" in weak.told[-1]
+    assert not any("--measured" in line for line in strong.told)
+    assert not any("--measured" in line for line in ratings([15.2], 0.1, weighed, where="arm.urdf").told), "it is given"

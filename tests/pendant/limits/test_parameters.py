@@ -196,3 +196,15 @@ def test_a_linear_limit_falls_along_gravity_as_well(name: str, share: float) -> 
     _, _, high = PARAMETERS[name].read(msgspec.structs.replace(view(value, since), shares=shares), 2.0)
     vertical = vector @ up / np.linalg.norm(vector)
     assert high == pytest.approx(2.0 * share / math.sqrt(1.0 + 3.0 * vertical**2))
+
+
+def test_no_joint_is_refused_for_what_its_encoder_makes_of_its_torque() -> None:
+    """Of rated 100 N·m each joint may have 4, and a quarter of its load; a coarse encoder makes 7."""
+    value = estimate(tau_ext=[5.0, 7.5, 0.0, 0.0, 0.0, 0.0], tau_J=[0.0, 10.0, 0.0, 0.0, 0.0, 0.0])
+    rated = (100.0,) * 6
+    assert PARAMETERS["joint_torque"].read(view(value, scale=rated, share=0.25), 0.04) == (5.0, "base", 4.0)
+    value.tau_blur = (3.0, 7.0, 3.0, 3.0, 3.0, 3.0)
+    assert PARAMETERS["joint_torque"].read(view(value, scale=rated, share=0.25), 0.04) == (5.0, "base", 4.0)
+    value.tau_blur = (7.0, 7.0, 3.0, 3.0, 3.0, 3.0)
+    assert PARAMETERS["joint_torque"].read(view(value, scale=rated, share=0.25), 0.04)[1:] == ("shoulder", 9.5)
+    assert PARAMETERS["joint_torque"].read(view(value, scale=rated), 0.8)[2] == 80.0, "what ends free-drive stays as it is"

@@ -69,6 +69,17 @@ def test_the_housing_of_wrist_1_is_never_ruled_out_although_no_joint_beyond_the_
     assert odds[ELBOW] < 0.5
 
 
+def test_a_shape_may_be_a_ball() -> None:
+    felt = Felt()
+    felt.odds(9, 0.5, np.array([0.0, 1.0, 0.0]))
+    models = felt.rigid.record, felt.momentum.record, felt.momentum.errors.record
+    shapes = hit_shapes(felt.arm)
+    shapes["way"] = 0.0
+    odds = hit_parts(models, shapes, FORCE)
+    assert sum(odds) == pytest.approx(1.0)
+    assert min(odds) >= 0.0
+
+
 def test_an_arm_without_shapes_tells_no_part() -> None:
     felt = Felt()
     felt.odds(4, 0.8, np.array([0.0, 1.0, 0.0]))

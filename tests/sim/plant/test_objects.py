@@ -3,7 +3,9 @@
 import mujoco
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
+from sim.arm.arm_file import Capsule
 from sim.arm.chain import Body, chain, plate_body, tool_body
 from sim.arm.scenario import AnyObject, BoxObject, Moving, Pad, Plane, Scenario, SnapFit, ToolModel, TwoFrictions
 from sim.plant.model import Step
@@ -276,3 +278,13 @@ def test_an_arm_that_begins_inside_itself_says_so() -> None:
         except ValueError as error:
             found.add(str(error).partition(" mm ")[2])
     assert found == {"", "inside itself"}
+
+
+def test_a_shape_may_be_a_ball() -> None:
+    """Of wrist 3, whose capsule MuJoCo would refuse at no length: it meets what a table is put against."""
+    arm = replace(UR5E, shapes=[Capsule(link=5, start=[0.0, 0.0, 0.1], end=[0.0, 0.0, 0.1], radius=0.05)])
+    plant = Plant(arm, Scenario(posture=LOW, world=[Plane(name="floor", position=[0.0, 0.0, -1.0])]))
+    geom = plant.model.geom("shape/0")
+    assert geom.type[0] == mujoco.mjtGeom.mjGEOM_SPHERE
+    assert geom.size[0] == 0.05
+    assert geom.pos.tolist() == pytest.approx([0.0, 0.0, 0.1])
