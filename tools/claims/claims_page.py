@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from app.runs.seed_runs import seeds_in
 from app.session.claims import CLAIMS
 from app.session.measures import watch
 from app.session.prepare import claiming, prepare
@@ -50,7 +49,7 @@ Row = dict[str, Any]
 
 
 class Seen(NamedTuple):
-    """A row of claims.csv: what the last run says of a claim and a session. Seeds are as `seeds_in` reads them, or ""."""
+    """A row of claims.csv: what the last run says of a claim and a session. Seeds are as `in_short` writes them."""
 
     claim: str
     session: str
@@ -161,11 +160,6 @@ def _in_short(each: Expected, seen: Seen | None) -> str:
     if seen is None or seen.of != each.of:
         return f"-, {len(each.mutants)}, {NOT_RUN}"
     return f"{seen.passed or '-'}, {seen.mutants - seen.not_noticed} of {seen.mutants}, {seen.shown}"
-
-
-def passed_at() -> dict[str, list[int]]:
-    """Sessions that show claims, and the seeds at which each has passed in the last `make claims`."""
-    return {seen.session: seeds_in(seen.passed) for seen in read_seen().values() if seen.passed}
 
 
 def details(wanted: list[Expected], seen: dict[tuple[str, str], Seen], rows: Iterable[Row]) -> str:
