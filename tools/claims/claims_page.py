@@ -67,8 +67,8 @@ class Seen(NamedTuple):
 
 
 def digest(checks: Iterable[str], mutants: Iterable[tuple[str, str]]) -> str:
-    """Of what a row runs: what is expected in words, and each mutant in words with its file. 12 hexadecimal digits."""
-    return hashlib.sha256(msgspec.json.encode([list(checks), sorted(mutants)])).hexdigest()[:12]
+    """Of what a row runs: what is expected in words, and each mutant in words with its file. 8 hexadecimal digits."""
+    return hashlib.sha256(msgspec.json.encode([list(checks), sorted(mutants)])).hexdigest()[:8]
 
 
 def seen_in(rows: Iterable[Row]) -> list[Seen]:
