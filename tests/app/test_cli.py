@@ -9,7 +9,7 @@ from app.files.checked import BadInput
 from tests.app.command_line import pendant
 
 
-@pytest.mark.parametrize("command", ["serve", "run", "export", "check", "claims", "replay", "schema", "robots"])
+@pytest.mark.parametrize("command", ["serve", "run", "export", "check", "replay", "schema", "robots"])
 def test_every_command_has_help_with_examples(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -20,7 +20,7 @@ def test_every_command_has_help_with_examples(
 def test_help_lists_only_what_works(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     assert pendant(monkeypatch) == 0
     shown = capsys.readouterr().out
-    assert all(command in shown for command in ("serve", "run", "check", "claims", "robots"))
+    assert all(command in shown for command in ("serve", "run", "check", "robots"))
 
 
 def test_robots_shows_the_arms(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
