@@ -139,7 +139,7 @@ def test_a_variant_has_another_flange_sensor_and_the_controller_knows(tmp_path: 
         ("ur5e-noisy-sensor", 1.0, (1.0, 1.0, 1.0), 0.0),
         ("ur5e-without-sensor", 1.0, (1.0, 1.0, 1.0), 2.2),  # 0.1 mrad of the encoder times 22 kN·m/rad of the shoulder
         ("ur3e", 0.6, (1.0, 1.0, 1.0), 0.0),  # 3 of 5 kg; a light arm does not get a lighter hand
-        # The wrist at 0.3 rad/s: 3.78, 3.89, 3.41 N·m (UR10e), 2.73, 2.98, 2.81 (UR16e), of 2.01, 1.72, 1.82; the UR10e has longer levers.
+        # The wrist at 0.3 rad/s: 3.78, 3.89, 3.41 N·m (UR10e) and 2.73, 2.98, 2.81 (UR16e), of 2.01, 1.72, 1.82.
         ("ur10e", 1.0, (1.30, 1.0, 2.0), 0.0),
         ("ur16e", 1.0, (1.59, 1.31, 1.54), 0.0),
     ],
