@@ -68,8 +68,8 @@ def test_a_standing_arm_stays_where_it_is() -> None:
 def test_brakes_take_the_weight_over_within_a_fraction_of_a_millimetre_and_give_it_back(arm: Arm) -> None:
     """Stretched out with 2 kg, the drive goes off as the brakes close; later it comes back as they open.
 
-    The bristles of a joint at rest give 0.2 mrad before it breaks away, and twice that in a swing. Shoulder and elbow have levers of
-    the whole and of half the reach.
+    The bristles of a joint at rest give 0.2 mrad before it breaks away, and twice that in a swing. Shoulder and elbow have levers
+    of the whole and of half the reach.
     """
     plant = Plant(arm, Scenario(payload_true=TWO_KG, posture=[0.0, -0.2, 0.2, 0.0, 0.5, 0.0]))
     flange = plant.model.body("flange").id
