@@ -341,7 +341,7 @@ def test_the_changelog_is_a_line_a_change() -> None:
     lines = (ROOT / "CHANGELOG.md").read_text().splitlines()
     assert sum(len(line.encode()) + 1 for line in lines) <= 8_000
     versions = [line for line in lines if line.startswith("## ")]
-    assert [bool(re.fullmatch(r"## \[\d+\.\d+\.\d+\]( - .+)?", line)) for line in versions] == [True] * len(versions)
+    assert [bool(re.fullmatch(r"## \[\d+\.\d+\.\d+(rc\d+)?\]( - .+)?", line)) for line in versions] == [True] * len(versions)
     changes = lines[lines.index(versions[0]) :]
     assert [each for each in changes if each and not re.match(r"## |- (Added|Changed|Fixed|Removed): [A-Z*`].*\.$", each)] == []
     assert len(set(changes) - {""}) == sum(map(bool, changes))

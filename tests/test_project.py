@@ -61,6 +61,11 @@ def test_the_wheel_takes_all_rooms_and_installs_the_command() -> None:
     assert PROJECT["project"]["scripts"] == {"pendant": "pendant_sim.start:main"}
 
 
+def test_the_changelog_begins_with_the_version() -> None:
+    headings = re.findall(r"^## \[(.+?)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert headings[0] == PROJECT["project"]["version"]
+
+
 def test_the_licence_is_mit() -> None:
     assert (ROOT / "LICENSE").read_text().startswith("MIT License\n\nCopyright (c) 2026 The pendant authors")
     assert PROJECT["project"]["license"] == "MIT"

@@ -1,3 +1,4 @@
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -7,6 +8,8 @@ import pytest
 from app.commands.command_options import setting
 from app.files.checked import BadInput
 from tests.app.command_line import pendant
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("command", ["serve", "run", "export", "check", "replay", "schema", "robots"])
@@ -21,6 +24,14 @@ def test_help_lists_only_what_works(monkeypatch: pytest.MonkeyPatch, capsys: pyt
     assert pendant(monkeypatch) == 0
     shown = capsys.readouterr().out
     assert all(command in shown for command in ("serve", "run", "check", "robots"))
+
+
+def test_the_version_is_told_with_the_commit(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert pendant(monkeypatch, "--version") == 0
+    said = re.fullmatch(r"pendant (\d+\.\d+\.\d+\S*), commit (\S+)\n", capsys.readouterr().out)
+    assert said is not None
+    head = subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert head.startswith(said[2])
 
 
 def test_robots_shows_the_arms(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
