@@ -4,8 +4,11 @@ import os
 import re
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from pendant_sim import Robot
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -38,14 +41,13 @@ def test_the_readme_example_session_is_valid_and_passes(tmp_path: Path) -> None:
     assert [verdict for verdict in outcome.verdicts if not verdict.passed] == []
 
 
-def test_the_readme_example_test_passes() -> None:
-    match = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
-    assert match is not None
-    names: dict[str, object] = {}
-    exec(match[1], names)
-    test = names["test_the_arm_holds"]
-    assert callable(test)
-    test()
+def test_the_readme_example_tests_pass(robot: Robot) -> None:
+    examples = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    names: dict[str, Any] = {}
+    for example in examples:
+        exec(example, names)
+    names["test_the_arm_holds"]()
+    names["test_the_program_moves_the_arm_and_sets_its_output"](robot)
 
 
 def test_ci_runs_make_test() -> None:

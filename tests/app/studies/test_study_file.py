@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,8 @@ from app.studies.plan import Plan
 from app.studies.study_file import open_study, studies
 from tests.app.studies.study_fakes import FIELDS, study
 
+ROOT = Path(__file__).parents[3]
+
 
 @pytest.mark.parametrize("quick", [True, False])
 @pytest.mark.parametrize("name", studies())
@@ -18,6 +21,14 @@ def test_a_bundled_study_makes_a_plan(name: str, quick: bool) -> None:
     assert 20 <= size <= (400 if quick else 5000)
     assert made.show
     assert made.worst is not None
+
+
+def test_the_study_of_the_guide_makes_a_plan(tmp_path: Path) -> None:
+    block = re.search(r"```yaml\n(.*?)```", (ROOT / "docs" / "guide" / "studies.md").read_text(), re.DOTALL)
+    assert block is not None
+    (tmp_path / "mine.yaml").write_text(block[1])
+    made, base = open_study(str(tmp_path / "mine.yaml"))
+    assert Plan(made, base, "mine.yaml").size == 7 * 2 * 32 * 2
 
 
 def test_there_are_four() -> None:
