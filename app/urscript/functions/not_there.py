@@ -5,10 +5,7 @@ from collections.abc import Iterator
 from app.urscript.machine.signature import Builtin, absent
 
 NO_SCREWDRIVER = "this robot has no screwdriver; force_mode() pushes along an axis"
-NO_EIP = (
-    "this robot has no EtherNet/IP, which robots have from software 5.16 on; "
-    "Modbus, XML-RPC, sockets and RTDE registers exchange data"
-)
+NO_EIP = "this robot has no EtherNet/IP; Modbus, XML-RPC, sockets and RTDE registers exchange data"
 NO_ROS = "this robot runs no ROS 2 of its own; UR's ROS 2 driver talks to it"
 NO_INTERPRETER = "this robot serves no interpreter (port 30020); send programs to the ports 30001 to 30003"
 NO_EUROMAP = "this robot has no Euromap67 interface"
