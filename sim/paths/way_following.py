@@ -7,6 +7,7 @@ import numpy as np
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
 from sim.paths.tool_kinematics import aligned, factored, inverted, look
+from sim.rigid_body.cholesky import solve
 from sim.rigid_body.newton_euler import cross, turned
 
 NEWTON_STEPS = 12
@@ -97,14 +98,23 @@ def _search(models, q, change):
 
 @kernel
 def _bias(own, rate, bend) -> None:
-    """Second derivative (n,) of the joint angles, from J q'' = x'' - J' q'."""
+    """Second derivative (n,) of the joint angles, which go by q' = J^T y with J J^T y = x'.
+
+    J q'' = x'' - J' q' has its shortest solution, and with more than six joints what J does not see of J'^T y besides.
+    """
     jacobian, origins, goal, twist = own.jacobian, own.origins, own.goal, own.twist
     p = own.p
     n = rate.size
     for k in range(3):
         twist[k], twist[3 + k] = goal[4, k], goal[5, k]
     w, v, last = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    tip = np.zeros(3)
+    tip, y, free = np.zeros(3), np.zeros(6), np.zeros(n)
+    if n > 6:
+        free[:] = rate
+        solve(own.normal, free, n)
+        for r in range(6):
+            for i in range(n):
+                y[r] += jacobian[r, i] * free[i]
     for i in range(n):
         for k in range(3):
             tip[k] += jacobian[k, i] * rate[i]
@@ -116,12 +126,23 @@ def _bias(own, rate, bend) -> None:
         turning = cross(w, z)
         first = cross(turning, (p[0] - here[0], p[1] - here[1], p[2] - here[2]))
         second = cross(z, (tip[0] - v[0], tip[1] - v[1], tip[2] - v[2]))
+        free[i] = 0.0
         for k in range(3):
             twist[k] -= rate[i] * (first[k] + second[k])
             twist[3 + k] -= rate[i] * turning[k]
+            free[i] += y[k] * (first[k] + second[k]) + y[3 + k] * turning[k]
         w = (w[0] + z[0] * rate[i], w[1] + z[1] * rate[i], w[2] + z[2] * rate[i])
         last = here
     inverted(own, bend)
+    if n > 6:
+        for r in range(6):
+            twist[r] = 0.0
+            for i in range(n):
+                twist[r] += jacobian[r, i] * free[i]
+        seen = np.empty(n)
+        inverted(own, seen)
+        for i in range(n):
+            bend[i] += free[i] - seen[i]
 
 
 @kernel
