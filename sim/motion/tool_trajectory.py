@@ -15,13 +15,13 @@ from sim.motion.planned import JERK_TIME, slower
 from sim.paths.curves import LEVER, NO_WAY, Circle, Path, straight_to
 from sim.paths.timing_law import HAIR, REST, Limits, TimingLaw, TooShort
 from sim.paths.tool_point import Followed, ToolPoint
+from sim.paths.way_following import SPATIAL
 
 Array = NDArray[np.float64]
 
 SPACING = 0.01  # between the places of a path that are looked at beforehand, at most [m]
 BEND = 0.03  # by which a joint goes between them, at most: less than across a singularity [rad]
 FEWEST = 4  # of them on a piece, at least
-SPATIAL = 6  # degrees of freedom of a pose
 BENDS = 0.5  # share of the joints' accelerations that a path's own acceleration leaves for its bends, where they need it
 FASTEST_LINE = (3.0, 50.0)  # speed and acceleration that a line with a time of its own is planned with [m/s, m/s²]
 
@@ -34,7 +34,8 @@ class ToolTrajectory:
     a singularity or out of reach is refused.
 
     With more than six joints the tool's pose leaves one free, and the joint angles of a place depend on the places before it.
-    Those are the ones of that walk then, so that the angles follow from the place alone, and the motion ends where it was planned to.
+    Those are the ones of that walk then, so that the angles follow from the place alone, and the motion ends where it was planned
+    to end.
 
     Args:
         q: joint angles at the begin of the path (n,) [rad].

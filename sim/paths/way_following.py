@@ -22,6 +22,9 @@ LEAP = 0.1
 MOST_LEAPS = 50
 """Of them, between two places."""
 
+SPATIAL = 6
+"""Degrees of freedom of a pose; an arm with more joints has some left."""
+
 ASIDE = 1e-4
 """Of a piece's length: over which the change of its turning is measured."""
 
@@ -109,12 +112,8 @@ def _bias(own, rate, bend) -> None:
         twist[k], twist[3 + k] = goal[4, k], goal[5, k]
     w, v, last = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     tip, y, free = np.zeros(3), np.zeros(6), np.zeros(n)
-    if n > 6:
-        free[:] = rate
-        solve(own.normal, free, n)
-        for r in range(6):
-            for i in range(n):
-                y[r] += jacobian[r, i] * free[i]
+    if n > SPATIAL:
+        _shortest(own, rate, y)
     for i in range(n):
         for k in range(3):
             tip[k] += jacobian[k, i] * rate[i]
@@ -126,7 +125,6 @@ def _bias(own, rate, bend) -> None:
         turning = cross(w, z)
         first = cross(turning, (p[0] - here[0], p[1] - here[1], p[2] - here[2]))
         second = cross(z, (tip[0] - v[0], tip[1] - v[1], tip[2] - v[2]))
-        free[i] = 0.0
         for k in range(3):
             twist[k] -= rate[i] * (first[k] + second[k])
             twist[3 + k] -= rate[i] * turning[k]
@@ -134,15 +132,34 @@ def _bias(own, rate, bend) -> None:
         w = (w[0] + z[0] * rate[i], w[1] + z[1] * rate[i], w[2] + z[2] * rate[i])
         last = here
     inverted(own, bend)
-    if n > 6:
-        for r in range(6):
-            twist[r] = 0.0
-            for i in range(n):
-                twist[r] += jacobian[r, i] * free[i]
-        seen = np.empty(n)
-        inverted(own, seen)
+    if n > SPATIAL:
+        _add_unseen(own, free, bend)
+
+
+@kernel
+def _shortest(own, rate, y) -> None:
+    """The y (6,) of which `rate` (n,) is J^T y."""
+    jacobian = own.jacobian
+    n = rate.size
+    x = rate.copy()
+    solve(own.normal, x, n)
+    for r in range(SPATIAL):
         for i in range(n):
-            bend[i] += free[i] - seen[i]
+            y[r] += jacobian[r, i] * x[i]
+
+
+@kernel
+def _add_unseen(own, free, bend) -> None:
+    """Add to `bend` (n,) what of `free` (n,) moves no tool."""
+    jacobian, twist = own.jacobian, own.twist
+    seen = np.empty(free.size)
+    for r in range(SPATIAL):
+        twist[r] = 0.0
+        for i in range(free.size):
+            twist[r] += jacobian[r, i] * free[i]
+    inverted(own, seen)
+    for i in range(free.size):
+        bend[i] += free[i] - seen[i]
 
 
 @kernel
