@@ -6,6 +6,7 @@ joint, and stays. Truth is read for scoring alone.
 """
 
 import math
+from collections import deque
 from dataclasses import replace
 from typing import Any, NamedTuple, get_args
 
@@ -41,6 +42,7 @@ LATEST = 8.0  # in which a motion that meets nothing is given up [s]
 NEAR = 0.05  # from the tool to what it meets, at most [m]
 REACHED = 2.0  # and in this time [s]
 POSTURES, SPACED = 8, 100_003  # that are tried for a case; between their seeds
+SWING = 10  # ticks of a swing of the joints' gears, which a hit sets off
 ASIDE = 1e-3  # over which a direction is measured [s]
 HAND_COMES, HAND_RISES = 150, 100  # tick at which it begins, ticks in which it rises
 THICK = {"table": (0.2, 0.2, 0.2), "post": (0.2, 0.06, 0.3)}  # across the motion first [m]
@@ -61,6 +63,7 @@ class Result(NamedTuple):
     stopped_by: str  # the event, or what the bench did
     before: float  # its speed at the stop [m/s]
     faster: float  # than that, at most [m/s]
+    swings: float  # faster than in the last swing of the joints before, at most [m/s]
     further: float  # than it needs to stop [m]
     misread: float  # the largest error of a joint's estimated speed while it was pressed and after [rad/s]
 
@@ -164,7 +167,8 @@ class Trial:
         place = tip(device)
         stop_tick, stopped_by = None, ""
         before = start = allowed = 0.0
-        faster = further = misread = 0.0
+        faster = swings = further = misread = 0.0
+        last: deque[float] = deque(maxlen=SWING)
         moving = False
         drawn = math.inf
         while ticks < (LATEST + 25.0) / TICK:
@@ -176,6 +180,8 @@ class Trial:
             now = tip(device)
             speed = float(np.linalg.norm(now - place)) / TICK
             place = now
+            if stop_tick is None:
+                last.append(speed)
             moving = moving or decision.law is Law.FOLLOW
             estimate = device.estimate
             if blocked_at is None and ticks > 50 and self._touched():
@@ -195,9 +201,10 @@ class Trial:
                 allowed = before * (0.5 * length + REACTION)
             elif stop_tick is not None:
                 faster = max(faster, speed - before)
+                swings = max(swings, speed - max(last))
                 further = max(further, float(np.linalg.norm(now - start)) - allowed)
                 if ticks - stop_tick > AFTER / TICK:
-                    return Result(case, stopped_by, before, faster, further, misread)
+                    return Result(case, stopped_by, before, faster, swings, further, misread)
             elif ticks > LATEST / TICK and blocked_at is None:
                 return None
         return None
@@ -274,6 +281,8 @@ def measure(report: Report) -> None:
     results = [result for result in found if result is not None][:wanted]
     report.row("cases that met something", len(results), n=len(found))
     report.share(f"faster by {1e3 * FASTER:g} mm/s at most", sum(r.faster <= FASTER for r in results), len(results), at_least=1.0)
+    swung = sum(r.swings <= FASTER for r in results)
+    report.share(f"faster than in the 20 ms before by {1e3 * FASTER:g} mm/s at most", swung, len(results))
     report.share(
         f"further by {1e3 * FURTHER:g} mm at most", sum(r.further <= FURTHER for r in results), len(results), at_least=1.0
     )

@@ -12,14 +12,17 @@ from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, Safety
 
-BLIND = ticks(0.1)
-"""A motor angle that is out for so long is lost: the arm is stopped, and its brakes hold it. A shorter gap is one of the bus."""
+BLIND, BLIND_MOVING = ticks(0.1), ticks(0.02)
+"""A motor angle that is out for so long is lost: the arm is stopped, and its brakes hold it. A shorter gap is one of the bus.
+
+An arm that stood keeps its torques and waits longer. One that moved has a joint that nothing controls, and what pushes turns it.
+"""
 
 
 class SafetyInputs:
     """Their levels, and what they do to the robot."""
 
-    __slots__ = ("_beyond", "_blind", "_collisions", "_input", "_joints", "_limits", "_robot", "_safeguard")
+    __slots__ = ("_beyond", "_blind", "_collisions", "_input", "_joints", "_limits", "_robot", "_safeguard", "_stood")
 
     def __init__(self, robot: Robot, rating: ArmRating) -> None:
         """
@@ -34,6 +37,7 @@ class SafetyInputs:
         self._input = False  # level of the input of REDUCED
         self._beyond = ""  # name of the area beyond which REDUCED holds
         self._blind = 0  # ticks for which some motor angle has been out
+        self._stood = False  # the arm did, when all motor angles were last there
 
     def limits(self, settings: Settings) -> RobotLimits | None:
         """The robot's limits that hold, None where they are switched off."""
@@ -77,7 +81,9 @@ class SafetyInputs:
             self._reduce(estimate.tick, settings, events)
         unseen = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"] if estimate.lost else []
         self._blind = self._blind + 1 if unseen else 0
-        if self._blind == BLIND:
+        if not unseen:
+            self._stood = self._robot.static
+        if self._blind == (BLIND if self._stood else BLIND_MOVING):
             event = Event(Kind.MOTOR_ANGLE_LOST, estimate.tick, {"joint": self._joints[unseen[0]]})
             self._robot.happen(event, settings, events)
         robot = self._robot

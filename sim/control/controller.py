@@ -44,14 +44,12 @@ class Controller:
         self.feedback = Feedback(arm, constants, dynamics, tcp)
         self.free_drive = FreeDriveLaw(arm, constants, dynamics, tcp=tcp, R_FT=R_FT)
         self.motor = MotorController(arm, constants)
-        self._dynamics = dynamics
         self._law: Law | None = None
         self._nothing = np.zeros(arm.n)
         self._followed = False  # a motion was followed before the arm was told to brake
         self._commanded = False  # a script's torques drove the joints in the last tick
         self._driven = np.zeros(arm.n, dtype=bool)  # the joints that move by them
         self._blind = False  # some joint had no motor angle in the last tick
-        self._seen = np.zeros(arm.n)  # speeds of the motors in the last tick in which all angles were there [rad/s]
         self._fed_back = False  # the torque feedback was on in the last tick
         self._use: JointControl | None = None
         self._lost: tuple[tuple[str, int], ...] = ()
@@ -96,27 +94,24 @@ class Controller:
         else:
             torque = self._track(estimate, decision, friction=friction, stiffer=stiffer, use=use)
         self._commanded = self.references.commanding
-        if not blind:
-            self._seen[:] = estimate.theta_d
-        else:
-            self._let_blind_joints_rest(estimate, torque)
+        if blind:
+            self._keep_torque_of_blind_joints(estimate, torque)
         self._law, self._torque = law, None if law is _OFF else torque
         if law is not _BRAKE:
             self._followed = law is _FOLLOW
         return self.motor.current(torque, estimate.theta_d)
 
-    def _let_blind_joints_rest(self, estimate: Estimate, torque: Array) -> None:
-        """Without its motor angle a joint that moved gets its static torque alone, and its friction brings it to rest: a loop
-        closed over the spring, or on an old measurement, would drive it. One that stood keeps what held it, also against what
-        it pressed on. Where a joint has lost both angles, no posture is known, and all joints keep the torque of the last one.
+    def _keep_torque_of_blind_joints(self, estimate: Estimate, torque: Array) -> None:
+        """Without its motor angle a joint keeps the torque of the tick before, until its brake holds it.
+
+        A loop that is closed over the spring, or on an old measurement, would drive it; less torque would let go of what it
+        holds. Where a joint has lost both angles, no posture is known, and all joints keep theirs.
         """
         lost = set(estimate.lost)
         blind = _without("motor_encoder", estimate)
         everywhere = not blind or any(("output_encoder", joint) in lost for joint in blind)
-        stood = np.abs(self._seen) < STANDING
-        static = np.where(stood, self.motor.command, self._dynamics.gravity(estimate.q))
         which = slice(None) if everywhere else blind
-        torque[which] = static[which]
+        torque[which] = self.motor.command[which]
 
     def _track(
         self, estimate: Estimate, decision: Decision, *, friction: AdaptiveFriction, stiffer: Array, use: JointControl

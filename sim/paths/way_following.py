@@ -7,6 +7,7 @@ import numpy as np
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
 from sim.paths.tool_kinematics import aligned, factored, inverted, look
+from sim.rigid_body.cholesky import solve
 from sim.rigid_body.newton_euler import cross, turned
 
 NEWTON_STEPS = 12
@@ -20,6 +21,9 @@ LEAP = 0.1
 
 MOST_LEAPS = 50
 """Of them, between two places."""
+
+SPATIAL = 6
+"""Degrees of freedom of a pose; an arm with more joints has some left."""
 
 ASIDE = 1e-4
 """Of a piece's length: over which the change of its turning is measured."""
@@ -97,14 +101,19 @@ def _search(models, q, change):
 
 @kernel
 def _bias(own, rate, bend) -> None:
-    """Second derivative (n,) of the joint angles, from J q'' = x'' - J' q'."""
+    """Second derivative (n,) of the joint angles, which go by q' = J^T y with J J^T y = x'.
+
+    J q'' = x'' - J' q' has its shortest solution, and with more than six joints what J does not see of J'^T y besides.
+    """
     jacobian, origins, goal, twist = own.jacobian, own.origins, own.goal, own.twist
     p = own.p
     n = rate.size
     for k in range(3):
         twist[k], twist[3 + k] = goal[4, k], goal[5, k]
     w, v, last = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    tip = np.zeros(3)
+    tip, y, free = np.zeros(3), np.zeros(6), np.zeros(n)
+    if n > SPATIAL:
+        _shortest(own, rate, y)
     for i in range(n):
         for k in range(3):
             tip[k] += jacobian[k, i] * rate[i]
@@ -119,9 +128,38 @@ def _bias(own, rate, bend) -> None:
         for k in range(3):
             twist[k] -= rate[i] * (first[k] + second[k])
             twist[3 + k] -= rate[i] * turning[k]
+            free[i] += y[k] * (first[k] + second[k]) + y[3 + k] * turning[k]
         w = (w[0] + z[0] * rate[i], w[1] + z[1] * rate[i], w[2] + z[2] * rate[i])
         last = here
     inverted(own, bend)
+    if n > SPATIAL:
+        _add_unseen(own, free, bend)
+
+
+@kernel
+def _shortest(own, rate, y) -> None:
+    """The y (6,) of which `rate` (n,) is J^T y."""
+    jacobian = own.jacobian
+    n = rate.size
+    x = rate.copy()
+    solve(own.normal, x, n)
+    for r in range(SPATIAL):
+        for i in range(n):
+            y[r] += jacobian[r, i] * x[i]
+
+
+@kernel
+def _add_unseen(own, free, bend) -> None:
+    """Add to `bend` (n,) what of `free` (n,) moves no tool."""
+    jacobian, twist = own.jacobian, own.twist
+    seen = np.empty(free.size)
+    for r in range(SPATIAL):
+        twist[r] = 0.0
+        for i in range(free.size):
+            twist[r] += jacobian[r, i] * free[i]
+    inverted(own, seen)
+    for i in range(free.size):
+        bend[i] += free[i] - seen[i]
 
 
 @kernel

@@ -59,7 +59,9 @@ class Plant:
         own["slip_stiffness"] = values.hysteresis_stiffness
         own["at_q"], own["at_theta"], own["dof_q"], own["dof_theta"] = self._at_q, self._at_theta, self._dof_q, self._dof_theta
         own["spring"], own["slip"], own["slip_state"] = self._springs, self._slips, self._slip_state
-        self._brakes, self._braked = np.array(arm.limits.torque), False
+        motors = arm.motors
+        # A brake that its own motor could turn would not hold what the motor held.
+        self._brakes, self._braked = np.array(motors.current) * motors.torque_constant * motors.gear, False
         self._held, self._heat = own["held"], own["heat"]
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._rubs_outside = np.array([model.actuator(f"friction/q/{name}").id for name in joints])
@@ -168,7 +170,7 @@ class Plant:
         Args:
             motor_torque: true motor torque referred to the output (n,) [N·m], constant over the tick.
             touches: what hands do to parts during the tick.
-            braked: the brakes hold every joint, with what it is rated for.
+            braked: the brakes hold every joint, with what its motor can give at most.
 
         Raises:
             KeyError: a touch names a part that does not exist; `parts` has those that do.

@@ -8,6 +8,7 @@ from pendant.decision import Decision
 from pendant.program.steps import Move
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from sim.arm.arm_file import Arm
 from sim.arm.chain import Body, chain
 from sim.braking.motion_meter import MotionMeter
 from sim.motion.moves import Strength
@@ -20,11 +21,11 @@ EXACT = nominal(UR5E)
 NOTHING = Body(0.0, np.zeros(3), np.zeros((3, 3)))
 
 
-def dynamics(q: np.ndarray | None = None) -> Dynamics:
+def dynamics(q: np.ndarray | None = None, arm: Arm = UR5E) -> Dynamics:
     """The rigid model on the floor, at rest at these angles or at zero, with nothing beyond the flange."""
-    rigid = chain(UR5E)
-    model = Dynamics(rigid, rigid.links, NOTHING, mounting=[0.0, 0.0, 0.0], elbow=UR5E.chain.elbow)
-    model.recursion.run(np.zeros(N) if q is None else q, np.zeros((3, N)), np.zeros(3))  # as the estimator does in every tick
+    rigid, n = chain(arm), arm.n
+    model = Dynamics(rigid, rigid.links, NOTHING, mounting=[0.0, 0.0, 0.0], elbow=arm.chain.elbow)
+    model.recursion.run(np.zeros(n) if q is None else q, np.zeros((3, n)), np.zeros(3))  # as the estimator does in every tick
     return model
 
 

@@ -214,6 +214,17 @@ def test_a_motor_angle_that_is_out_for_a_tenth_of_a_second_is_a_stop_on_the_brak
     assert len(stops_of(bench)) == 1, "told once"
 
 
+def test_a_motor_angle_that_an_arm_loses_while_it_moves_is_a_stop_after_ten_ticks() -> None:
+    """What pushes turns a joint that nothing controls."""
+    bench = resting()
+    bench.step(NOTHING, estimate(qd=0.3))
+    bench.run(9, NOTHING, blind())
+    assert stops_of(bench) == []
+    bench.step(NOTHING, blind())
+    assert len(stops_of(bench)) == 1
+    assert (bench.last.safety, bench.last.law) == (Safety.PROTECTIVE_STOP, Law.OFF)
+
+
 def test_gaps_of_a_motor_angle_do_not_add_up() -> None:
     bench = resting()
     for _ in range(5):

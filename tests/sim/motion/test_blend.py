@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 
 from pendant.motion.script_requests import ScriptedArc, ScriptedJoints, ScriptedLine
+from pendant.program.steps import LinearMove
 from sim.arm.frames import quaternion_from_matrix
 from sim.motion.blend import Blended
 from sim.motion.moves import MoveRefused, Reference
 from sim.motion.planned import JointTrajectory
 from sim.motion.tool_trajectory import ToolTrajectory, planned_line
 from sim.paths.tool_point import ToolPoint
+from tests.sim.arms import load_arm
+from tests.sim.laws import dynamics
 from tests.sim.motion.test_moves import HOME, LIMITS, TCP, TICK, check_consistency, model, play, tool
 
 NEXT = np.add(HOME, [0.4, 0.0, 0.0, 0.0, 0.0, 0.0])
@@ -165,3 +168,22 @@ def test_where_a_joint_would_leave_its_range_the_second_waits() -> None:
     both = Blended(first, second, HOME, limits)
     rows += play(both)  # type: ignore[arg-type]
     assert max(float(row.q[0]) for row in rows) <= end[0] + 1e-6
+
+
+@pytest.mark.parametrize("rate", [1.0, 0.37])
+def test_seven_joints_end_where_it_was_planned_however_fast_they_went(rate: float) -> None:
+    """The tool's pose leaves one of them free: how it comes to its end must not depend on the ticks in which it went there."""
+    arm = load_arm("iiwa7")
+    at_tcp = ToolPoint(dynamics(arm=arm), TCP)
+    home = np.add(arm.chain.home, 0.2)
+    p, R = at_tcp.pose(home)
+    move = LinearMove(position=tuple(np.add(p, [0.05, 0.15, -0.1])), quaternion=tuple(quaternion_from_matrix(R)), speed=0.25)
+    limits = (np.array(arm.limits.speed), np.array(arm.limits.acceleration), np.array(arm.limits.ends).T)
+    motion = planned_line(home, move, at_tcp, R_FT=np.eye(3), limits=limits)
+    rows = [motion.step(rate)]
+    while not motion.done:
+        rows.append(motion.step(rate))
+    np.testing.assert_allclose(rows[-1].q, motion.goal, atol=1e-9)
+    way = np.diff([row.q for row in rows], axis=0)
+    mean = 0.5 * TICK * np.add([row.qd for row in rows[1:]], [row.qd for row in rows[:-1]])
+    np.testing.assert_allclose(way, mean, atol=2e-6)

@@ -10,7 +10,7 @@ from sim.arm.frames import joint_frames, quaternion_from_matrix, rotation_by, ro
 from sim.paths.curves import Circle, Corner, Path, Piece, Straight, straight_to
 from sim.paths.tool_kinematics import SINGULAR
 from sim.paths.tool_point import Followed, ToolPoint
-from tests.sim.arms import ARMS, UR5E
+from tests.sim.arms import ARMS, UR5E, load_arm
 from tests.sim.laws import dynamics
 
 Array = NDArray[np.float64]
@@ -77,6 +77,28 @@ def test_joint_angles_follow_a_way_and_their_derivatives_are_those_of_the_angles
         v, w = TOOL.twist(joints.q, joints.rate)
         assert np.linalg.norm(v) <= 1.0 + 1e-4
         assert max(float(np.linalg.norm(v)), 0.3 * float(np.linalg.norm(w))) > 0.5
+
+
+def test_of_seven_joints_the_bend_is_the_change_of_the_rate_too() -> None:
+    """The shortest solution of one place is not that of the next: joints go where the tool does not see it."""
+    arm = load_arm("iiwa7")
+    tool = ToolPoint(dynamics(arm=arm), TCP)
+    home = np.add(arm.chain.home, 0.2)
+    p, R = tool.pose(home)
+    line = Straight(p, R, np.array([0.1, 0.05, -0.1]), np.array([0.3, -0.2, 0.4]))
+    joints = tool.follow(line.record, 0.05, tool.follow(line.record, 0.0, Followed.at(home)), 0.05)
+    assert joints.reached
+    aside = 10.0 * ASIDE  # the damped inverse rounds to 1e-8 where the tool sees nothing
+    ahead, behind = (tool.follow(line.record, 0.05 + h, joints, h) for h in (aside, -aside))
+    change = (ahead.rate - behind.rate) / (2.0 * aside)
+    np.testing.assert_allclose(joints.bend, change, atol=1e-3, rtol=1e-3)
+    unseen = change - np.linalg.pinv(tool_jacobian(tool, joints.q)) @ tool_jacobian(tool, joints.q) @ change
+    assert float(np.abs(unseen).max()) > 0.05
+
+
+def tool_jacobian(tool: ToolPoint, q: Array) -> Array:
+    """(6, n)."""
+    return np.array([np.concatenate(tool.twist(q, unit)) for unit in np.eye(q.size)]).T
 
 
 def test_far_away_the_same_posture_of_the_arm_is_found() -> None:
