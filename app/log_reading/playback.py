@@ -133,7 +133,6 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         v_F=state["v_F"],
         v_tcp=float(state["v_tcp"]),
         v_elbow=float(state["v_elbow"]),
-        move_done=0,
         friction=state["friction"],
     )
     return Snapshot(

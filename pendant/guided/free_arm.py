@@ -128,8 +128,9 @@ class FreeArm:
         if reading is not None and not before:
             events.append(Event(Kind.WALL_REACHED, tick, facts(reading)))
         self._zones.step(estimate)
-        if self._singularity.step(estimate.singularity, settings.axes) and axis_locks(settings.axes) is not None:
-            values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
+        near = around.status.singularity
+        if self._singularity.step(near, settings.axes) and axis_locks(settings.axes) is not None:
+            values: Values = {"status": self._singularity.status, "value": near, "limit": settings.axes.near}
             events.append(Event(Kind.SINGULARITY, tick, values))
         self.singularity = self._singularity.status
         baseline = bias.baseline if bias.used else None

@@ -101,9 +101,6 @@ class Estimate:
     v_F: Array  # (6,) flange velocity: linear [m/s], then angular [rad/s], axes of B, at the flange origin
     v_tcp: float  # speed of the tool centre point [m/s]
     v_elbow: float  # speed of the elbow [m/s]
-    move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
-    move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
-    move_wall: str = ""  # the area at whose border it has stopped that move
     following: FollowingError = ON_PATH  # of the arm against its reference
     link_force: LinkForce = NO_LINK_FORCE  # on a link; of what the flange carries, too, without a valid flange sensor
     motion: MotionMeasures = STANDS
@@ -139,7 +136,6 @@ class Estimate:
     joints_feel: JointsFeel = JointsFeel.NOTHING  # there, too
     missing_mass: tuple[float, float] = (0.0, math.inf)  # payload beyond the configured one, its deviation; without sensor [kg]
     tau_blur: tuple[float, ...] = ()  # (n,) what the output encoders make of tau_ext, at most; (): nothing is known [N·m]
-    singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import FrictionFrom, JointControl
+from pendant.decision import EstimatorCommand
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
@@ -35,7 +36,7 @@ from sim.sensing.sensors import Sample
 
 Array = NDArray[np.float64]
 
-SHIPPED = JointControl()
+AT_FIRST = EstimatorCommand()
 _DEFLECTION = FrictionFrom.DEFLECTION  # looked up in every tick
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
@@ -110,15 +111,10 @@ class Estimator:
     def update(
         self,
         sample: Sample,
-        move_done: int,
-        move_refused: str,
-        move_wall: str = "",
+        command: EstimatorCommand = AT_FIRST,
         *,
-        use: JointControl = SHIPPED,
         answered: Reference | None = None,
         learn: bool = True,
-        bias: tuple[float, ...] | None = None,
-        unsure: float = 0.0,
     ) -> Estimate:
         """Take the measurements of one tick.
 
@@ -126,17 +122,13 @@ class Estimator:
 
         Args:
             sample: this tick's measurements.
-            move_done, move_refused, move_wall: as in `Estimate`.
-            use: says which sources the torques come from.
+            command: of the last decision; its tool, payload and zero are in the models and in the sample.
             answered: motion that was wanted at the time of the measurement, or None. With a motion the filters follow the
                 deviation from it, so they do not lag behind a planned acceleration.
             learn: False while a hand may move the arm: friction stays as known, and the gears are not compared with the rigid
                 model.
-            bias: bias of the flange sensor in free-drive, in axes of F [N, N·m]; None outside free-drive.
-            unsure: standard deviation of each axis of the bias, without the sensor's noise [N]. If it is infinite, the sensor is
-                not used, and only the joints tell whose force it is.
         """
-        dynamics = self._dynamics
+        dynamics, bias, unsure = self._dynamics, command.bias, command.unsure
         self.tick += 1
         theta, q = self._theta, self._q
         angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
@@ -161,7 +153,7 @@ class Estimator:
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
         sensed = sample.wrench_valid and math.isfinite(unsure)  # valid and used
-        self._observe(sample, sensed, self._estimate_torques(sample, use, learn) and learn)
+        self._observe(sample, sensed, self._estimate_torques(sample, command.use, learn) and learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known, valid = self._known, sample.joints_valid
         if known is None:
@@ -170,11 +162,10 @@ class Estimator:
         known.joints_valid, known.wrench_valid, known.acceleration_valid = valid, sample.wrench_valid, sample.acceleration_valid
         known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
-        known.move_done, known.move_refused, known.move_wall = move_done, move_refused, move_wall if move_refused else ""
         known.degraded = not valid and self.started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(*self._bears)
-        known.load_mass, known.singularity = dynamics.load.mass, math.inf
+        known.load_mass = dynamics.load.mass
         if bias is not None or self._free:
             self._free = bias is not None
             self._ask_whose(known, bias if sensed else None, unsure)
@@ -219,7 +210,6 @@ class Estimator:
             v_F=rigid.v_F,
             v_tcp=0.0,
             v_elbow=0.0,
-            move_done=0,
             g_B=self._dynamics.gravity_B,
             theta_dd=theta[2],
             friction=friction.total,

@@ -52,11 +52,11 @@ class Snapshot:
     @property
     def p_FT(self) -> NDArray[np.float64]:
         """(3,) The centre point of the tool in use, in F [m]; the flange's own where none is fitted."""
-        fitting = self.decision.fitting
+        fitting = self.decision.estimator.fitting
         return np.zeros(3) if fitting is None else np.array(fitting.tool.tcp)
 
     @property
     def R_FT(self) -> NDArray[np.float64]:
         """(3, 3) How the tool in use is turned in F; not at all where none is fitted."""
-        fitting = self.decision.fitting
+        fitting = self.decision.estimator.fitting
         return np.eye(3) if fitting is None else rotation_from_rpy(fitting.tool.rpy)

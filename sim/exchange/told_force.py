@@ -11,7 +11,7 @@ from sim.sensing.sensor_drift import sensor_spec
 
 def told_force(arm: Arm, estimate: Estimate, decision: Decision) -> UncertainForce | None:
     """What free-drive took for the user's force in a tick; None while the arm is not free."""
-    taken, fitting = decision.taken, decision.fitting
+    taken, fitting = decision.taken, decision.estimator.fitting
     if taken is None:
         return None
     x, y, z = ORIGIN if fitting is None else fitting.tool.tcp

@@ -52,7 +52,6 @@ def estimate(**values: Any) -> Estimate:
         "v_F": np.zeros(6),
         "v_tcp": 0.0,
         "v_elbow": 0.0,
-        "move_done": 0,
         "friction": np.zeros(N),
         "friction_deviation": np.zeros(N),
         "tau_ways": np.zeros((3, N)),

@@ -242,9 +242,6 @@ def test_a_snapshot_never_changes_afterwards() -> None:
             "joints_valid",
             "wrench_valid",
             "acceleration_valid",
-            "move_done",
-            "move_refused",
-            "move_wall",
             "following",  # free-drive follows nothing
             "link_force",
             "clipped",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.files.library import load_arm
 from app.robot_interface.controller.callers import at_once
 from pendant.all_settings import Settings
-from pendant.decision import Decision
+from pendant.decision import Decision, EstimatorCommand
 from pendant.equipment.tools import Tool
 from pendant.events.event import Event, Kind, Values
 from pendant.freedrive.periods import Remaining
@@ -172,9 +172,8 @@ class FakeLoop:
             self.periods,
             (),
             monitored=self.monitored,
-            fitting=self.fitting,
+            estimator=EstimatorCommand(self.fitting, self.zero),
             wizard=self.wizard,
-            zero=self.zero,
             zero_due=self.zero_due,
             locks=self.locks,
             singularity=self.singularity,

@@ -19,6 +19,7 @@ from pendant.limits.validity import JOINTS_SENSED, Stillness, WrenchMean
 from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY, Estimate, JointsFeel
 from pendant.tick.modes import TICK, Mode
+from pendant.tick.motion_status import NO_MOTION, MotionStatus
 from pendant.tick.pose import ORIGIN
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder, Area
@@ -53,14 +54,16 @@ class Free:
             rated=RATED,
         )
 
-    def around(self, value: Estimate, shaken: bool = False) -> Surroundings:
+    def around(self, value: Estimate, shaken: bool = False, status: MotionStatus = NO_MOTION) -> Surroundings:
         value.tick = self.tick
         ok = self.mean.step(value)
-        return Surroundings(value, Mode.FREE_DRIVE, ok, Stillness(), self.mean, shaken=shaken, payload=self.payload)
+        return Surroundings(
+            value, Mode.FREE_DRIVE, ok, Stillness(), self.mean, shaken=shaken, payload=self.payload, status=status
+        )
 
-    def see(self, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
+    def see(self, value: Estimate, waits: bool = False, shaken: bool = False, status: MotionStatus = NO_MOTION) -> list[Event]:
         self.tick += 1
-        return whole_transition(self.arm.step(self.around(value, shaken), self.settings, waits), self.tick)
+        return whole_transition(self.arm.step(self.around(value, shaken, status), self.settings, waits), self.tick)
 
     def during(self, ticks: int, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
         return [event for _ in range(ticks) for event in self.see(value, waits, shaken)]
@@ -163,10 +166,8 @@ def test_the_way_to_a_singularity_is_told_where_a_lock_may_have_to_give_way(lock
     for tick, (value, word, new) in enumerate(
         [(0.05, ok, False), (0.03, near, True), (0.03, near, False), (0.005, too_near, True)], 1
     ):
-        now = estimate()
-        now.singularity = value
         event = Event(Kind.SINGULARITY, tick, {"status": word, "value": value, "limit": 0.04})
-        assert free.see(now) == ([event] if locked and new else [])
+        assert free.see(estimate(), status=MotionStatus(singularity=value)) == ([event] if locked and new else [])
         assert free.arm.singularity is word
 
 
