@@ -6,7 +6,7 @@ import msgspec
 
 from pendant.limits.residual import PayloadError
 from pendant.limits.validity import Stillness, WrenchMean
-from pendant.sensor.odds import RARELY
+from pendant.sensor.hand_model import RARELY
 from pendant.sensor.taring import Taring
 from pendant.signals.enabling_device import Grip, enables
 from pendant.tick.estimate import Estimate

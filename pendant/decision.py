@@ -9,8 +9,8 @@ from pendant.events.event import Event
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.periods import Remaining
 from pendant.guided.bias_follower import SURE, Slack
-from pendant.guided.force_covariance import TakenForce
 from pendant.guided.pull import PullCauses
+from pendant.guided.user_force import TakenForce
 from pendant.haptics import Shake
 from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness

@@ -10,7 +10,7 @@ from benchmarks.hold import IDLE, enter, flange, lift
 from benchmarks.payload import Case, simulation
 from benchmarks.use import free_way
 from pendant.all_settings import Settings, apply
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
 from sim.plant.changes import AnyChange, DropPayload, SensorFault

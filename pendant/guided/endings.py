@@ -15,7 +15,7 @@ from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split
 from pendant.limits.soft_limits import Damping, SoftLimits
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench, norm
 

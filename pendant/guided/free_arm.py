@@ -6,10 +6,9 @@ from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.bias_follower import SURE, UNUSED
 from pendant.guided.endings import EndingWatch
-from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
 from pendant.guided.pull import HandFelt, PullCauses, felt
 from pendant.guided.sensor_bias import SensorBias
-from pendant.guided.user_force import UserForce
+from pendant.guided.user_force import TakenForce, UserForce, upward_in_flange
 from pendant.limits.axis_locks import axis_locks
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import SingularityWatch
@@ -140,7 +139,7 @@ class FreeArm:
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force)
         self.pressed = self._pressed(settings, tick)
-        self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
+        self.taken = hand.taken(slack.force, self._hung, use_wrench=bias.used)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)

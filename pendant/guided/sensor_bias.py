@@ -13,7 +13,7 @@ from pendant.guided.bias_follower import BiasFollower, Slack, added, drift, with
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
-from pendant.sensor.odds import KNOWN
+from pendant.sensor.hand_model import KNOWN
 from pendant.sensor.sensor_errors import LEVER, load_weight
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate

@@ -186,7 +186,7 @@ class Containment:
             estimate: of this tick.
             user: the user's force, axes of B [N].
             payload: force of the payload-like residual, axes of B [N].
-            led: somebody pays for the arm's motion (`pendant.guided.work`).
+            led: somebody pays for the arm's motion (`pendant.guided.unintended_motion`).
         """
         if self._enclosure is None:
             return None

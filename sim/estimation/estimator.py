@@ -28,8 +28,8 @@ from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import JointTorques, PayloadFall
 from sim.estimation.torque_balance import NOT_TOLD, balance, missing_mass
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
+from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
-from sim.flange.whose_force import WhoseForce
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import Sample
@@ -94,19 +94,19 @@ class Estimator:
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
-        self.whose_force = WhoseForce(arm, self.forces)
+        self.whose_force = ExternalWrench(arm, self.forces)
         self.momentum = MomentumObserver(arm, dynamics)
         joints = JointTorques(self.momentum, self.transmission, self._deflection)
-        self.fall = PayloadFall(arm, dynamics.recursion, joints, self.whose_force.bank)
+        self.fall = PayloadFall(arm, dynamics.recursion, joints, self.whose_force)
         self.link_hand = LinkHand(arm, dynamics.recursion, self.momentum)
-        self._bears = self.transmission.record, dynamics.recursion.record, self.whose_force.bank.record, self._ways
+        self._bears = self.transmission.record, dynamics.recursion.record, self.whose_force.record, self._ways
         self._known: Estimate | None = None
         self.tick = 0
 
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange; the `payload`, a part of the load, may get lost."""
         self.forces.set_load(load)
-        self.whose_force.bank.set_load(load, payload)
+        self.whose_force.set_load(load, payload)
 
     def update(
         self,

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
-from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Scenario
+from sim.exchange.told_force import UncertainForce
 from sim.gripping.finger_drive import GripperState
 
 

@@ -18,7 +18,7 @@ from pendant.tick.modes import Mode
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.exchange.desk import Wishes
-from sim.flange.whose_force import Odds, WhoseForce
+from sim.flange.external_wrench import ExternalWrench, Odds
 from sim.plant.changes import AttachPayload, DropPayload, FrictionChange, MoveObject, SensorFault, Temperature
 from sim.plant.touch import Push, Touch
 from sim.sensing.calibration import Calibration
@@ -347,13 +347,13 @@ def test_a_configured_payload_changes_what_the_controller_believes() -> None:
 def test_what_the_bias_may_be_wrong_by_is_told_to_whoever_asks_whose_force_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """FD-19: in free-drive as the pendant decided last, which is more with time; else nothing is asked."""
     told: list[tuple[bool, float]] = []
-    inner = WhoseForce.update
+    inner = ExternalWrench.update
 
-    def update(self: WhoseForce, bias: tuple[float, ...] | None, unsure: float = 0.0, *, accelerations: bool) -> Odds:
+    def update(self: ExternalWrench, bias: tuple[float, ...] | None, unsure: float = 0.0, *, accelerations: bool) -> Odds:
         told.append((bias is not None, unsure))
         return inner(self, bias, unsure, accelerations=accelerations)
 
-    monkeypatch.setattr(WhoseForce, "update", update)
+    monkeypatch.setattr(ExternalWrench, "update", update)
     bench = Bench(Scenario(seed=2))
     bench.run(0.5)
     assert told == []

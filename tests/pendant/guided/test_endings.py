@@ -10,11 +10,10 @@ from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.guided.bias_follower import SURE
 from pendant.guided.endings import Ending, EndingWatch, _torque, way_back
+from pendant.guided.unintended_motion import LEFT
 from pendant.guided.user_force import SWING, UserForce
-from pendant.guided.work import LEFT
 from pendant.inputs import NOTHING, Button, Inputs
-from pendant.sensor.hand_model import LIGHT, TOUCH
-from pendant.sensor.odds import HALF, KNOWN, SUSPECTED, TOUCHES
+from pendant.sensor.hand_model import HALF, KNOWN, LIGHT, SUSPECTED, TOUCH, TOUCHES
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Mode

@@ -16,7 +16,7 @@ from pendant.guided.user_force import UserForce
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import Nearness
 from pendant.limits.validity import JOINTS_SENSED, Stillness, WrenchMean
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY, Estimate, JointsFeel
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.motion_status import NO_MOTION, MotionStatus

@@ -12,8 +12,7 @@ from pendant.guided.user_force import UserForce
 from pendant.inputs import NOTHING
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WrenchMean
-from pendant.sensor.hand_model import SLOWEST, STEADY, TREMOR
-from pendant.sensor.odds import HALF, KNOWN
+from pendant.sensor.hand_model import HALF, KNOWN, SLOWEST, STEADY, TREMOR
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, window_noise
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK, Mode, Phase

@@ -8,12 +8,10 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.bias_follower import Slack
-from pendant.guided.unintended_motion import UnintendedMotion
+from pendant.guided.unintended_motion import LEFT, UnintendedMotion
 from pendant.guided.user_force import UserForce
-from pendant.guided.work import LEFT
 from pendant.limits.parameters import reference
-from pendant.sensor.hand_model import LASTS, LIGHT
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF, LASTS, LIGHT
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.state import state_of

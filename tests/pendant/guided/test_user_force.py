@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from pendant.guided.user_force import JOINTS_SWING, SWING, UserForce
-from pendant.sensor.hand_model import KEEPS, STEADY
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF, KEEPS, STEADY
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from pendant.guided.work import LEFT, Work
-from pendant.sensor.odds import HALF
+from pendant.guided.unintended_motion import LEFT, Work
+from pendant.sensor.hand_model import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector

@@ -8,7 +8,7 @@ import pytest
 from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
 from pendant.program.steps import JointMove, Program
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF
 from pendant.signals.joint_push import JointPushSignal
 from pendant.signals.settings import JointPush
 from pendant.tick.modes import Law, Mode, Phase

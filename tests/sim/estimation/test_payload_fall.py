@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from pendant.events.event import Kind
-from pendant.sensor.odds import RARELY
+from pendant.sensor.hand_model import RARELY
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
