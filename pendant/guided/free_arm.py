@@ -155,7 +155,7 @@ class FreeArm:
     def _pull(self, estimate: Estimate, least: float) -> PullCauses:
         """What pulls at the arm in this tick: a hand's force is at least so large [N]."""
         if not self._bias.used:
-            return PullCauses(HandFelt.FLANGE if estimate.joints_feel is JointsFeel.HAND else HandFelt.NOBODY)
+            return PullCauses(HandFelt.FLANGE if estimate.whose.joints_feel is JointsFeel.HAND else HandFelt.NOBODY)
         hand = self._hand
         who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=self._operation.moved)
-        return PullCauses(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds)
+        return PullCauses(who, estimate.whose.lost_odds, estimate.whose.lost_share, estimate.whose.step_odds)

@@ -53,7 +53,7 @@ class Work:
 
     def begin(self, estimate: Estimate) -> None:
         """A stretch begins."""
-        self._clear(estimate.energy)
+        self._clear(estimate.whose.energy)
 
     def _clear(self, energy: float) -> None:
         self._ticks = 0
@@ -79,13 +79,13 @@ class Work:
         (fx, fy, fz), (tx, ty, tz) = wrench
         pushed, turned = fx * x + fy * y + fz * z, tx * a + ty * b + tz * c  # without calls: in every tick, up to twice
         at_flange = sure[0] * pushed + sure[1] * turned
-        done, certain, rubbed = estimate.powers
+        done, certain, rubbed = estimate.whose.powers
         if done > 0.0:
             done = max(done + min(pushed + turned - at_flange, 0.0), min(certain, done), 0.0)
         done = (done * counts + at_flange) * TICK
         rubbed *= HALF * LEFT * TICK
         self._ticks += 1
-        self._slower = self._energy - estimate.energy
+        self._slower = self._energy - estimate.whose.energy
         self._done += done
         self._rubbed += rubbed
         self._owed = max(self._owed + rubbed - done, 0.0)
@@ -208,7 +208,7 @@ class UnintendedMotion:
         if use_wrench:
             there = x * x + y * y + z * z >= least * least and hand.surely(least)
         else:
-            there = estimate.joints_feel is JointsFeel.HAND
+            there = estimate.whose.joints_feel is JointsFeel.HAND
         wrench, usual = NOTHING_FELT, norm(hand.usual)
         if use_wrench and usual < LIGHT + slack.force:
             wrench = (hand.usual, torque), (_certain(usual, slack.force), _certain(norm(torque), slack.torque))
@@ -235,7 +235,7 @@ class UnintendedMotion:
                 stretch.begin(estimate)
             self._ticks += 1
             stretch.work.step(estimate, *wrench, counts=use_wrench or caused)
-        if not use_wrench and not self._may_fall(estimate.joints_feel):
+        if not use_wrench and not self._may_fall(estimate.whose.joints_feel):
             whole.begin(estimate)
         if caused:
             self._at_rest = False
@@ -285,7 +285,7 @@ class UnintendedMotion:
         A fall would be helped on as a hand is, so that it is doubtful at once.
         """
         self.led = False
-        fallen = estimate.joints_feel is JointsFeel.FALL
+        fallen = estimate.whose.joints_feel is JointsFeel.FALL
         if not (fallen or (moves and self._at_rest)):
             return None, False
         way = self._whole if fallen else self._stretch

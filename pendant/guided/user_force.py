@@ -136,7 +136,7 @@ class UserForce:
         by += _JOINTS * (y - residual * uy - by)
         bz += _JOINTS * (z - residual * uz - bz)
         self._by_joints = (bx, by, bz)
-        user = self._by_joints if estimate.joints_feel is _HAND else ORIGIN
+        user = self._by_joints if estimate.whose.joints_feel is _HAND else ORIGIN
         self.by_joints = user is not ORIGIN
         if use_wrench:
             (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
@@ -157,7 +157,7 @@ class UserForce:
             sy += _SENSOR * (y - slow * uy - sy)
             sz += _SENSOR * (z - slow * uz - sz)
             self._by_sensor = (sx, sy, sz)
-            x, y, z = estimate.F_link.tolist()
+            x, y, z = estimate.whose.F_link.tolist()
             self.by_joints = (x, y, z) != ORIGIN
             user = (sx + x, sy + y, sz + z)
         self.user = user if norm(user) >= self._doubt else ORIGIN

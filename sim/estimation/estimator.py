@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pendant.all_settings import FrictionFrom, JointControl
 from pendant.decision import EstimatorCommand
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, WhoseForce
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
@@ -174,16 +174,17 @@ class Estimator:
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None, unsure: float) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
         odds = self.whose_force.update(bias, unsure, accelerations=known.acceleration_valid)
-        known.lost_odds, known.lost_share, known.step_odds, known.step_force = odds
-        known.energy = self._dynamics.recursion.energy.item() + self._spin.item()
-        known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
+        energy = self._dynamics.recursion.energy.item() + self._spin.item()
+        fell, feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
+        link, qd = self.link_hand, self._q[1]
         if bias is None:
-            self.link_hand.forget()
-            known.tau_hand, known.tau_certain = self.fall.torque, self.fall.certain
+            link.forget()
+            hand, certain = self.fall.torque, self.fall.certain
         else:
-            self.link_hand.update(bias, self._q[1], self._ways[DEFLECTION])
-            known.tau_hand, known.tau_certain = self.link_hand.torque, self.link_hand.certain
-        known.powers = powers(self._q[1], known.tau_hand, known.tau_certain, known.friction)
+            link.update(bias, qd, self._ways[DEFLECTION])
+            hand, certain = link.torque, link.certain
+        done = powers(qd, hand, certain, known.friction)
+        known.whose = WhoseForce(*odds, fell, feel, hand, certain, done, energy, link.force, link.touch)
 
     def _all(self, sample: Sample) -> Estimate:
         """The estimate that every tick renews: most of it are arrays that are written in place."""
@@ -218,10 +219,7 @@ class Estimator:
             tcp=rigid.tcp,
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,
-            F_link=self.link_hand.force,
-            F_touch=self.link_hand.touch,
-            tau_hand=self.link_hand.torque,
-            tau_certain=self.link_hand.certain,
+            whose=WhoseForce(tau_hand=np.zeros_like(self.q), tau_certain=np.zeros_like(self.q)),
             current=self._current,
             tau_blur=self._blur,
         )

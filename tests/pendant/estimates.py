@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
 from pendant.sensor.sensor_spec import SensorSpec
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, WhoseForce
 
 N = 6
 SENSOR = SensorSpec()
@@ -81,12 +81,14 @@ def estimate(
         current=_zeros(n),
         load_mass=load_mass,
         friction=_vector(friction, n),
-        energy=energy,
-        tau_hand=_vector(tau_hand, n),
-        tau_certain=_vector(tau_certain, n),
-        powers=(_power(qd, tau_hand), _power(qd, tau_certain), _power(qd, friction)),
-        F_link=_vector(link, 3),
-        F_touch=_vector(touch, 3),
+        whose=WhoseForce(
+            tau_hand=_vector(tau_hand, n),
+            tau_certain=_vector(tau_certain, n),
+            powers=(_power(qd, tau_hand), _power(qd, tau_certain), _power(qd, friction)),
+            energy=energy,
+            F_link=_vector(link, 3),
+            F_touch=_vector(touch, 3),
+        ),
     )
 
 

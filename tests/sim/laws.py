@@ -6,7 +6,7 @@ import numpy as np
 
 from pendant.decision import Decision
 from pendant.program.steps import Move
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, WhoseForce
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from sim.arm.chain import Body, chain
 from sim.braking.motion_meter import MotionMeter
@@ -55,10 +55,9 @@ def estimate(**values: Any) -> Estimate:
         "friction": np.zeros(N),
         "friction_deviation": np.zeros(N),
         "tau_ways": np.zeros((3, N)),
-        "tau_hand": np.zeros(N),
-        "tau_certain": np.zeros(N),
     }
-    return Estimate(**{**known, **values})
+    hand = {name: values.pop(name, np.zeros(N)) for name in ("tau_hand", "tau_certain")}
+    return Estimate(**{**known, **values}, whose=WhoseForce(**hand))
 
 
 def decision(

@@ -160,7 +160,7 @@ def test_where_the_arm_is_guided_nothing_is_taken_off() -> None:
 def stepped(odds: float, force: float) -> Estimate:
     """The sensor feels so much more, and has stepped with these odds."""
     value = estimate(force=[0.0, 0.0, force])
-    value.step_odds, value.step_force = odds, force
+    value.whose = value.whose._replace(step_odds=odds, step_force=force)
     return value
 
 

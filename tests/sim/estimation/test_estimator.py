@@ -57,7 +57,7 @@ def test_the_kinetic_energy_in_free_drive_is_that_of_links_and_rotors() -> None:
     speed = np.array([0.1, -0.5, 1.0, -2.0, 3.0, 0.3])
     result = follow(lambda t: BENT + speed * t, bias=(0.0,) * 6)
     inertia = estimator()._dynamics.mass(result.q) + np.diag(UR5E.motors.rotor_inertia)
-    assert result.energy == pytest.approx(0.5 * speed @ inertia @ speed, rel=1e-6)
+    assert result.whose.energy == pytest.approx(0.5 * speed @ inertia @ speed, rel=1e-6)
 
 
 def test_a_steady_speed_is_followed_without_lag() -> None:

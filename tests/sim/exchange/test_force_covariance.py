@@ -151,8 +151,8 @@ def test_what_the_flange_sensor_tells_comes_with_all_that_it_feels() -> None:
 def test_of_what_the_joints_tell_there_is_none(used: bool, at_flange: float) -> None:
     hand = UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
     value = estimate(force=[0.0, at_flange, 0.0])
-    value.F_joints = value.F_link = np.array([30.0, 0.0, 0.0])
-    value.joints_feel = JointsFeel.NOTHING if used else JointsFeel.HAND
+    value.F_joints = link = np.array([30.0, 0.0, 0.0])
+    value.whose = value.whose._replace(F_link=link, joints_feel=JointsFeel.NOTHING if used else JointsFeel.HAND)
     for _ in range(50):
         hand.step(value, used, MOVES)
     assert hand.user[0] > 15.0
