@@ -74,6 +74,10 @@ class JointsFeel(IntEnum):
     HAND = 2  # neither
 
 
+_NO_FORCE = np.zeros(3)
+_NO_FORCE.flags.writeable = False  # all estimates share it
+
+
 class WhoseForce(NamedTuple):
     """What moves the free arm, as far as flange sensor and joints tell; outside free-drive nothing is told."""
 
@@ -87,8 +91,8 @@ class WhoseForce(NamedTuple):
     tau_certain: Array = _no_joints()  # (n,) what of it a hand makes for certain in this tick [N·m]
     powers: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of tau_hand, tau_certain, friction [W]
     energy: float = 0.0  # kinetic, of links and rotors [J]
-    F_link: Array = np.zeros(3)  # force on the flange that explains tau_hand best, in B, with a valid flange sensor [N]
-    F_touch: Array = np.zeros(3)  # the same of a touch of a standing arm [N]
+    F_link: Array = _NO_FORCE  # force on the flange that explains tau_hand best, in B, with a valid flange sensor [N]
+    F_touch: Array = _NO_FORCE  # the same of a touch of a standing arm [N]
 
     def copy(self) -> "WhoseForce":
         """The same values in arrays of their own."""
