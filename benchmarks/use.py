@@ -103,7 +103,7 @@ def measure_push(push: Guiding) -> Result:
             caught += event.kind is Kind.WALL_REACHED
             if TABLE[event.kind].effect in LEAVING:
                 left.append(event.kind.value)
-                fall = device.estimate.joints_feel is JointsFeel.FALL
+                fall = device.estimate.whose.joints_feel is JointsFeel.FALL
         way = max(way, float(np.linalg.norm(flange(device) - start)))
     force = device.plant.hands.touched[0][2] if device.plant.hands.touched else np.zeros(3)
     lever = float(np.abs(force @ levers(device, "flange")).max() / max(float(np.linalg.norm(force)), 1e-9))

@@ -6,11 +6,12 @@ import msgspec
 
 from pendant.limits.residual import PayloadError
 from pendant.limits.validity import Stillness, WrenchMean
-from pendant.sensor.odds import RARELY
+from pendant.sensor.hand_model import RARELY
 from pendant.sensor.taring import Taring
 from pendant.signals.enabling_device import Grip, enables
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
+from pendant.tick.motion_status import NO_MOTION, MotionStatus
 
 
 class Surroundings(msgspec.Struct, frozen=True, gc=False):
@@ -30,6 +31,7 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
     shaken: bool = False  # haptic feedback moves the arm: not what a hand does (FD-19)
     payload: float = 0.0  # configured, without the tool [kg]
     taring: Taring | None = None  # of the flange sensor; None: nothing is known of its zero
+    status: MotionStatus = NO_MOTION  # of the control law's last tick
 
     @property
     def maybe_zero(self) -> bool:

@@ -2,13 +2,15 @@
 
 import msgspec
 
+from pendant.all_settings import JointControl
 from pendant.contact.contact_change import Contact
+from pendant.contact.settings import ContactUse
 from pendant.events.event import Event
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.periods import Remaining
 from pendant.guided.bias_follower import SURE, Slack
-from pendant.guided.force_covariance import TakenForce
 from pendant.guided.pull import PullCauses
+from pendant.guided.user_force import TakenForce
 from pendant.haptics import Shake
 from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness
@@ -25,6 +27,19 @@ from pendant.tooling.payload_wizard import IDLE, Progress
 from pendant.tooling.tool_in_use import Fitting
 from pendant.walls.containment import WallState
 from pendant.walls.workspace import Workspace
+
+
+class EstimatorCommand(msgspec.Struct, frozen=True, gc=False):
+    """What the estimator goes by in the next tick."""
+
+    fitting: Fitting | None = None  # tool and payload
+    zero: Wrench = ZEROS  # subtracted from the flange sensor's values, axes of F [N, N·m]
+    bias: Wrench | None = None  # of these values in free-drive, axes of F [N, N·m]; None: free-drive is off
+    unsure: float = 0.0  # standard deviation of each axis of the bias [N]; infinite: the sensor is not used
+    planned: bool = False  # planned motion moves the arm: no hand on a link, which no sensor tells
+    looks: bool = True  # changes in contact are looked for, or as soon as something asks for them
+    use: JointControl = JointControl()  # sources of the torques
+    contact: ContactUse = ContactUse()  # sources in which contacts are looked for
 
 
 class Decision(msgspec.Struct, frozen=True, gc=False):
@@ -45,7 +60,6 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     monitored: tuple[Monitored, ...] = ()  # parameters against their limits, while the activation sequence checks them
     contacts: tuple[Contact, ...] = ()  # changes in contact seen in this tick (CD-16)
     flange_help: bool = False  # a hand is helped by what the flange sensor tells, under Law.FREE (FD-3)
-    looks: bool = True  # for changes in contact, now or as soon as something asks for them: the next tick needs their signals
     tool_on: bool = False  # what the program switches (CD-15)
     outputs: frozenset[int] = frozenset()  # digital outputs that the program has switched on
     walls: tuple[WallState, ...] = ()  # that hold
@@ -61,9 +75,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     slack: Slack = SURE  # of F_user beyond the baseline, what may be the sensor's drift: it helps nobody, under Law.FREE (FD-19)
     doubtful: bool = False  # it may be that nobody leads the free arm: its friction is not compensated (FD-19)
     shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)
-    fitting: Fitting | None = None  # tool and payload, from the next tick on
     wizard: Progress = IDLE  # of the payload
-    zero: Wrench = ZEROS  # subtracted from the flange sensor's values from the next tick on, axes of F [N, N·m]
     reading_zero: Wrench = ZEROS  # F_user that counts as none where forces are told or pushed with, axes of F [N, N·m]
     zero_due: bool = False  # the untouched arm feels what may soon refuse free-drive: the sensor should be zeroed
     limits: str = ""  # safety checksum
@@ -74,4 +86,5 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
     pull: PullCauses | None = None  # what pulls at the free arm (FD-19); None while free-drive is off
+    estimator: EstimatorCommand = EstimatorCommand()
     taken: TakenForce | None = None  # for the user's force (FD-19); None while free-drive is off

@@ -16,6 +16,7 @@ from pendant.safety.robot_limits import SpeedLimits
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
+from pendant.tick.motion_status import MotionStatus
 from pendant.tick.pose import from_rpy
 from pendant.tooling.arm_shape import ArmShape
 from pendant.tooling.tool_in_use import Tooling
@@ -105,6 +106,7 @@ class Equipping:
         settings: Settings,
         events: list[Event],
         *,
+        status: MotionStatus,
         mode: Mode,
     ) -> None:
         """One tick.
@@ -114,6 +116,7 @@ class Equipping:
             inputs: of this tick.
             settings: as they are now.
             events: of this tick; more are added.
+            status: what the control law did in the last tick.
             mode: that says whether tool and payload may be changed.
         """
         robot, tooling = self._robot, self._tooling
@@ -128,7 +131,7 @@ class Equipping:
             if reason:
                 self._stop(reason, estimate.tick, events)
             else:
-                self._go_on(estimate, settings, told, events)
+                self._go_on(estimate, settings, told, events, status=status)
         elif inputs.commands and Command.WIZARD_RUN in inputs.commands:
             self._ask(estimate, settings, inputs, events)
 
@@ -178,13 +181,15 @@ class Equipping:
             return "the flange force sensor is not valid"
         return self._watch.step(estimate, self._mean.mean()[:3]) if self._stage else ""
 
-    def _go_on(self, estimate: Estimate, settings: Settings, told: list[Event], events: list[Event]) -> None:
+    def _go_on(
+        self, estimate: Estimate, settings: Settings, told: list[Event], events: list[Event], *, status: MotionStatus
+    ) -> None:
         """One tick in which nothing is against it."""
         robot, wizard = self._robot, self._tooling.wizard
         if robot.turn is not None:
-            if estimate.move_refused:
-                self._stop(estimate.move_refused, estimate.tick, events)
-            elif estimate.move_done == robot.turn.id:
+            if status.refused:
+                self._stop(status.refused, estimate.tick, events)
+            elif status.done == robot.turn.id:
                 self._arrive(estimate, events)
         elif self._stage is WizardStage.SEEKING:
             self._seek(estimate, events)

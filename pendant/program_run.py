@@ -16,6 +16,7 @@ from pendant.robot.robot_mode import Robot
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
+from pendant.tick.motion_status import MotionStatus
 from pendant.tick.pose import Vector
 from pendant.walls.containment import Containment
 
@@ -77,6 +78,7 @@ class ProgramRun:
         settings: Settings,
         events: list[Event],
         *,
+        status: MotionStatus,
         monitor: ContactMonitor,
         changing: bool,
     ) -> None:
@@ -87,14 +89,15 @@ class ProgramRun:
             inputs: of this tick.
             settings: as they are now.
             events: of this tick; more are added.
+            status: what the control law did in the last tick.
             monitor: knows where the arm is.
             changing: the configured payload is being changed.
         """
         robot = self._robot
         sequencer = robot.sequencer
         sequencer.high = inputs.high
-        if estimate.move_wall and robot.move is not None:
-            events += self._containment.reached(estimate, settings.walls)
+        if status.wall and robot.move is not None:
+            events += self._containment.reached(estimate, status.wall, settings.walls)
         if inputs.program is not None:
             self._load(inputs.program, estimate.tick, events)
         move = sequencer.move
@@ -105,13 +108,13 @@ class ProgramRun:
                     robot.refuse(command, estimate, why_not, events)
                 else:
                     self._steer(command, estimate.tick, events)
-        self._jogging.step(estimate, inputs, settings, events, changing=changing)
+        self._jogging.step(estimate, inputs, settings, events, status=status, changing=changing)
         if robot.mode is not _FREE_DRIVE and (sequencer.braked or (move is not None and sequencer.move is move)):
             before, tool_on, outputs = len(events), sequencer.tool_on, sequencer.outputs
-            self._go_on(estimate, monitor, settings, events)
+            self._go_on(estimate, monitor, settings, events, status=status)
             events[before:before] = self._did(estimate.tick, tool_on, outputs)  # the last step comes before the end
         if move is not None and sequencer.scripted:
-            self._follow_script(estimate, inputs, settings, events)
+            self._follow_script(estimate, inputs, settings, events, done=status.done)
 
     def _did(self, tick: int, tool_on: bool, outputs: frozenset[int]) -> list[Event]:
         """What the step of this tick has switched, from what was on before, and what it tells."""
@@ -128,10 +131,10 @@ class ProgramRun:
             events.append(Event(Kind.OUTPUT_SWITCHED, tick, {"number": number, "state": state}))
         return events
 
-    def _follow_script(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event]) -> None:
+    def _follow_script(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event], *, done: int) -> None:
         """One tick of a step that is a script; without its word the arm comes to rest, also a guided one."""
         robot, wish = self._robot, inputs.script
-        reason = self.scripting.step(estimate.move_done, wish, ticks(settings.hold.silence))
+        reason = self.scripting.step(done, wish, ticks(settings.hold.silence))
         over = wish is not None and wish.over
         if (reason or over) and robot.free.phase is not Phase.OFF:
             robot.happen(Event(Kind.DEACTIVATED, estimate.tick), settings, events)
@@ -141,7 +144,9 @@ class ProgramRun:
             self._end()
             events.append(Event(Kind.PROGRAM_FINISHED, estimate.tick, {"name": robot.program_name}))
 
-    def _go_on(self, estimate: Estimate, monitor: ContactMonitor, settings: Settings, events: list[Event]) -> None:
+    def _go_on(
+        self, estimate: Estimate, monitor: ContactMonitor, settings: Settings, events: list[Event], *, status: MotionStatus
+    ) -> None:
         """One tick of a step, in the order of precedence."""
         robot, sequencer = self._robot, self._robot.sequencer
         if not motion_ok(estimate):
@@ -154,11 +159,11 @@ class ProgramRun:
             events.append(Event(Kind.RUN_ENABLING, estimate.tick, {"grip": robot.grip or ""}))
             robot.begin_stop(Kind.RUN_ENABLING)
             robot.pause_program(estimate.tick, events)
-        elif estimate.move_refused:
-            self.fail(estimate.move_refused, estimate.tick, events)
-        elif missed := sequencer.missed(estimate.move_done):
+        elif status.refused:
+            self.fail(status.refused, estimate.tick, events)
+        elif missed := sequencer.missed(status.done):
             self.fail(missed, estimate.tick, events)
-        elif sequencer.step(estimate.move_done, monitor.now, self._felt):
+        elif sequencer.step(status.done, monitor.now, self._felt):
             self._finish(estimate.tick, events)
 
     def fail(self, reason: str, tick: int, events: list[Event]) -> None:

@@ -2,7 +2,7 @@
 
 from pendant.all_settings import Settings, safety_checksum
 from pendant.contact.contact_change import Contact
-from pendant.decision import Decision
+from pendant.decision import Decision, EstimatorCommand
 from pendant.events.event import Event, Kind
 from pendant.guided.bias_follower import SURE
 from pendant.haptics import Shake
@@ -53,7 +53,7 @@ class Publisher:
             law: of this tick.
             events: all that happened in it.
             contacts: changes in contact seen in it.
-            looks: for them, as in `Decision`.
+            looks: for them, as in `EstimatorCommand`.
             speeds: that the robot's limits allow.
             joint_range: that they allow, None for the arm's own.
             shake: haptic feedback.
@@ -72,6 +72,17 @@ class Publisher:
         walls = () if phase is _OFF else free.walls()
         monitored = free.monitored() if trying else ()
         flange_help = helping and balance is None and not (trying and not use.sequence.amplified)
+        slack, baseline, freed = SURE if arm is None else arm.slack, free.baseline, law is _FREE
+        command = EstimatorCommand(
+            tooling.fitting,
+            taring.zero,
+            baseline if freed else None,
+            slack.axis if freed else 0.0,
+            law is _FOLLOW,
+            looks,
+            use.joint_control,
+            use.contact,
+        )
         active = sequencer.state is _RUNNING or sequencer.state is _PAUSED
         return Decision(
             mode=mode,
@@ -82,14 +93,13 @@ class Publisher:
             gain=use.free_drive.gain if flange_help else 0.0,
             flange_help=flange_help,
             force_cap=use.free_drive.force_cap,
-            baseline=free.baseline,
+            baseline=baseline,
             periods=periods,
             events=tuple(events),
             program=sequencer.state,
             step=sequencer.index + 1 if active else 0,
             monitored=monitored,
             contacts=contacts,
-            looks=looks,
             tool_on=sequencer.tool_on,
             outputs=sequencer.outputs,
             walls=walls,
@@ -100,15 +110,13 @@ class Publisher:
             damping=damping,
             zones=free.zones,
             balance=balance,
-            fitting=tooling.fitting,
             wizard=tooling.wizard.progress,
             locks=locks,
             singularity=singularity,
             shake=shake,
-            zero=taring.zero,
             reading_zero=taring.reading_zero,
             zero_due=taring.due,
-            slack=SURE if arm is None else arm.slack,
+            slack=slack,
             doubtful=doubtful,
             limits=self._checksum,
             static=robot.static,
@@ -119,6 +127,7 @@ class Publisher:
             script_done=self._scripting.done,
             pull=free.pull,
             taken=None if arm is None else arm.taken,
+            estimator=command,
         )
 
     def _free_axes(self) -> AxisLocks | None:
@@ -130,4 +139,5 @@ class Publisher:
 
 
 _FREE_DRIVE, _SEQUENCE, _OFF = Mode.FREE_DRIVE, Phase.SEQUENCE, Phase.OFF  # looked up in every tick
+_FREE, _FOLLOW = Law.FREE, Law.FOLLOW
 _RUNNING, _PAUSED = ProgramState.RUNNING, ProgramState.PAUSED

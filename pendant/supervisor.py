@@ -36,6 +36,7 @@ from pendant.signals.keep_alive import KeepAlive
 from pendant.signals.sources import PROGRAM
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law, Mode, Phase, way_out
+from pendant.tick.motion_status import NO_MOTION, MotionStatus
 from pendant.tick.pose import Pose, Wrench
 from pendant.tick.state import State, state_of
 from pendant.tooling.arm_shape import ArmShape
@@ -144,8 +145,14 @@ class Supervisor:
         """
         return state_of(self)
 
-    def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
-        """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
+    def step(self, estimate: Estimate, inputs: Inputs, status: MotionStatus = NO_MOTION) -> Decision:
+        """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below.
+
+        Args:
+            estimate: of this tick.
+            inputs: of this tick.
+            status: what the control law did in the last tick.
+        """
         events: list[Event] = []
         wrench_ok = self._observe(estimate, inputs, events)
         looks = self._feel(estimate, events)
@@ -157,10 +164,11 @@ class Supervisor:
             self._obey(estimate, commands, events)
         asked, beyond = self._robot.move is not None and self._run.presses, self.containment.beyond(estimate, self.settings.walls)
         self._safety.watch(estimate, self.settings, events, asked=asked, beyond=beyond)
-        self._run.step(estimate, inputs, self.settings, events, monitor=self._monitor, changing=self._tooling.changing)
-        self._free_drive(estimate, wrench_ok, events)
+        changing = self._tooling.changing
+        self._run.step(estimate, inputs, self.settings, events, status=status, monitor=self._monitor, changing=changing)
+        self._free_drive(estimate, status, wrench_ok, events)
         mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else self._robot.mode
-        self._equipping.step(estimate, inputs, self.settings, events, mode=mode)
+        self._equipping.step(estimate, inputs, self.settings, events, status=status, mode=mode)
         self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
         trying = self._free.phase is not _OFF
         if inputs.borders is not None:
@@ -241,11 +249,11 @@ class Supervisor:
                     events.append(Event(Kind.MODE_CHANGED, estimate.tick, {"from": robot.mode, "to": to}))
                     robot.mode = to
 
-    def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
+    def _free_drive(self, estimate: Estimate, status: MotionStatus, wrench_ok: bool, events: list[Event]) -> None:
         robot, calls, free, fitting = self._robot, self._calls, self._free, self._tooling.fitting
         changing = fitting.mass if self._tooling.changing else None
         felt = (calls.hand_off, calls.touched, calls.force, changing)
-        others = (self._sequencer.guiding, self._haptics.busy, fitting.load.mass, self._tare.taring)
+        others = (self._sequencer.guiding, self._haptics.busy, fitting.load.mass, self._tare.taring, status)
         around = Surroundings(estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, *others)
         happened = free.step(around, self.settings)
         for event in happened.events:

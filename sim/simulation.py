@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
-from pendant.decision import Decision
+from pendant.decision import Decision, EstimatorCommand
 from pendant.equipment.tools import Equipment, Tool
 from pendant.guided.pull import PullWatch
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
+from pendant.tick.motion_status import NO_MOTION
 from pendant.tick.pose import Pose
 from pendant.tooling.tool_in_use import Fitting
 from pendant.walls.definitions import AnyBorder
@@ -20,7 +21,7 @@ from sim.arm.chain import NOTHING, arm_shape, chain, load_body, plate_body, tool
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
 from sim.collisions.arm_watch import ArmWatch
-from sim.control.controller import Controller
+from sim.control.controller import Controlled, Controller
 from sim.control.feedback import following_limit
 from sim.estimation.contact_sources import ContactSources
 from sim.estimation.estimator import Estimator
@@ -43,7 +44,7 @@ from sim.plant.true_arm import Plant
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing import calibration
 from sim.sensing.sensor_drift import SensorDrift, sensor_spec
-from sim.sensing.sensors import Sensors
+from sim.sensing.sensors import Sample, Sensors
 
 Array = NDArray[np.float64]
 
@@ -108,8 +109,10 @@ class Simulation:
             sensor=sensor_spec(arm),
             shape=arm_shape(arm),
         )
-        self.zero, self._zero = self.supervisor.zero, None  # until the sensor is zeroed
-        self.fitting = self.supervisor.fitting
+        # What passes from one tick to the next.
+        self._command = EstimatorCommand(self.supervisor.fitting, use=settings.joint_control, contact=settings.contact)
+        self.fitting, self._zeroed = self.supervisor.fitting, self._command.zero
+        self._zero: Array | None = None  # until the sensor is zeroed
         self.controller = Controller(arm, self.calibration, self.dynamics, tcp=self.tcp, R_FT=self.R_FT)
         self.watch = ArmWatch(
             self.dynamics,
@@ -119,8 +122,8 @@ class Simulation:
             following=following_limit(arm),
         )
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
-        self.current = self.dynamics.gravity(self.plant.q) / self._motor
-        self.sensors.read(self.plant, self.current)  # as it comes one tick late: what the first tick will know
+        self._controlled = Controlled(self.dynamics.gravity(self.plant.q) / self._motor, NO_MOTION, None)
+        self.sensors.read(self.plant, self._controlled.current)  # as it comes one tick late: what the first tick will know
         self.gripper = self.plant.gripper  # a device of the arm: its object-detected input is a measurement
         self._decision: Decision | None = None
         self._estimate: Estimate | None = None
@@ -165,44 +168,59 @@ class Simulation:
         """
         for change in wishes.changes:
             self.apply(change)
-        supervisor, estimator, controller, plant = self.supervisor, self.estimator, self.controller, self.plant
-        if supervisor.fitting is not self.fitting:
-            self.fit(supervisor.fitting)
-        if supervisor.zero is not self.zero:
-            self.zero, self._zero = supervisor.zero, np.array(supervisor.zero)
-            self.contact_sources.set_zero(self._zero)
-            self.watch.set_zero(self._zero)
-        sample = self.sensors.read(plant, self.current)
+        plant, estimator, command, before = self.plant, self.estimator, self._command, self._controlled
+        self._prepare(command)
+        sample = self.sensors.read(plant, before.current)
         if self._zero is not None:
             sample.wrench -= self._zero  # once: each sample arrives once
-        use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
-        told = references.move_done, references.refusal, references.keeper.wall
-        decided = self._decision
-        before = None if decided is None else decided.law
-        # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
-        # sensor tells its force; what stops it may be one as well.
-        learn = before is _FOLLOW and not references.commanding
-        bias, unsure = (decided.baseline, decided.slack.axis) if decided is not None and before is _FREE else (None, 0.0)
-        answered = references.answered
-        estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
-        self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
-        if before is _FREE:
-            estimate.singularity = controller.free_drive.singularity.value
-        self.watch.read(
-            sample, estimate, answered.q if answered is not None and estimator.started else None, free=before is _FREE
-        )
+        estimate = self._know(sample, command, before)
         gripper, inputs = self.gripper, wishes.inputs
         if gripper is not None and gripper.detected_input is not None:
             inputs = replace(inputs, high=inputs.high | {gripper.detected_input})
-        decision = supervisor.step(estimate, inputs)
+        decision = self.supervisor.step(estimate, inputs, before.status)
         friction, stiffer = estimator.friction, estimator.transmission.stiffer
-        self.current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)
+        self._controlled = now = self.controller.update(
+            estimate, decision, estimator.jacobian, friction=friction, stiffer=stiffer, use=command.use
+        )
         if gripper is not None:
             gripper.wired(_outputs(decision) if wishes.outputs is None else wishes.outputs)
-        plant.advance(self.current * self._motor, wishes.touches, decision.law is _OFF)
-        self._estimate, self._decision = estimate, decision
+        plant.advance(now.current * self._motor, wishes.touches, decision.law is _OFF)
+        self._estimate, self._decision, self._command = estimate, decision, decision.estimator
         self._pulls.step(decision.pull)
         return decision
+
+    def _prepare(self, command: EstimatorCommand) -> None:
+        """Tool, payload and zero as they were decided: between two ticks, all at once."""
+        if command.fitting is not None and command.fitting != self.fitting:
+            self.fit(command.fitting)
+        if command.zero != self._zeroed:
+            self._zeroed, self._zero = command.zero, np.array(command.zero)
+            self.contact_sources.set_zero(self._zero)
+            self.watch.set_zero(self._zero)
+
+    def _know(self, sample: Sample, command: EstimatorCommand, before: Controlled) -> Estimate:
+        """All that the controller knows in this tick, put together from those who estimate it.
+
+        Args:
+            sample: this tick's measurements, of which the zero has been taken.
+            command: of the last decision.
+            before: what the controller did in the last tick.
+        """
+        estimator, answered, free = self.estimator, before.answered, command.bias is not None
+        # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
+        # sensor tells its force; what stops it may be one as well.
+        learn = command.planned and not before.status.commanded
+        estimate = estimator.update(sample, command, answered=answered, learn=learn)
+        estimate.signals = self.contact_sources.read(sample, estimate, estimator.jacobian, command.contact, looks=command.looks)
+        wanted = answered.q if answered is not None and estimator.started else None
+        watched = self.watch.read(sample, estimate, wanted, free=free)
+        estimate.clipped, estimate.link_force, estimate.following, estimate.motion = watched
+        return estimate
+
+    @property
+    def current(self) -> Array:
+        """Motor currents (n,) of the tick done last [A]."""
+        return self._controlled.current
 
     def rest(self, seconds: float) -> None:
         """Let time pass without physics: nobody touches the arm, and nothing of it moves.
@@ -326,4 +344,4 @@ def _outputs(decision: Decision) -> int:
 TOOL_OUTPUT = 16
 """Bit of the tool's first digital output."""
 
-_FREE, _OFF, _FOLLOW = Law.FREE, Law.OFF, Law.FOLLOW  # looked up in every tick
+_OFF = Law.OFF  # looked up in every tick

@@ -17,7 +17,6 @@ MODULES = tuple(
     sorted(
         (
             *JUDGING,
-            "pendant/guided/force_covariance.py",
             "pendant/guided/pull.py",
             "pendant/sensor/sensor_errors.py",
             "sim/estimation/momentum_observer.py",
@@ -26,7 +25,6 @@ MODULES = tuple(
             "sim/estimation/transmission_torque.py",
             "sim/exchange/told_force.py",
             "sim/flange/flange_forces.py",
-            "sim/flange/whose_force.py",
         )
     )
 )

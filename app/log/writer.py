@@ -19,9 +19,9 @@ from pendant.all_settings import Settings, describe, digest, safety_checksum, va
 from pendant.decision import Decision
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event
-from pendant.guided.force_covariance import UncertainForce
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import FreeCylinder, Plane, Scenario
+from sim.exchange.told_force import UncertainForce
 from sim.gripping.finger_drive import GripperState
 from sim.simulation import Simulation
 

@@ -15,11 +15,11 @@ from app.log.recorded_messages import PendantMessage
 from app.log_reading.reader import Log
 from pendant.decision import Decision
 from pendant.freedrive.periods import Remaining
-from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import NOT_TOLD, HandFelt, PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
 from sim.exchange.snapshot import Snapshot
+from sim.exchange.told_force import UncertainForce
 from sim.gripping.finger_drive import GripperState
 
 
@@ -133,7 +133,6 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         v_F=state["v_F"],
         v_tcp=float(state["v_tcp"]),
         v_elbow=float(state["v_elbow"]),
-        move_done=0,
         friction=state["friction"],
     )
     return Snapshot(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from app.real_logs.log_ticks import Ticks
 from app.session.timeline_checks import Prepared
 from pendant.contact.contact_monitor import ContactMonitor
+from pendant.decision import EstimatorCommand
 from pendant.safety.collision import Collisions
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
@@ -83,7 +84,8 @@ class LogController:
         known: SensorSpec = sensor_spec(arm)
         self._monitor, self._collisions = ContactMonitor(known), Collisions(tuple(arm.chain.joints))
         way = settings.joint_control
-        self._use = way if two_angles else replace(way, from_deflection=False, friction_from=type(way)().friction_from)
+        use = way if two_angles else replace(way, from_deflection=False, friction_from=type(way)().friction_from)
+        self._command = EstimatorCommand(use=use)
         motors = arm.motors
         self._rotor = np.array(motors.rotor_inertia) * constants.rotor_inertia
         self._per_ampere = np.array(motors.gear) * np.array(motors.torque_constant) * constants.motor_constant
@@ -129,7 +131,7 @@ class LogController:
             sample.temperature, sample.wrench_valid = ticks.temperature[j], bool(sensed[j])
             planned, knows = bool(ticks.learns[j]), j >= ticks.run_in
             answered = plan[j] if planned else None
-            estimate = estimator.update(sample, 0, "", use=self._use, answered=answered, learn=planned and knows)
+            estimate = estimator.update(sample, self._command, answered=answered, learn=planned and knows)
             out.tau_m[j], out.rotor[j], out.rigid[j] = estimator.tau_m, estimate.theta_dd, rigid.torque
             out.friction[j], out.speed[j], out.tau_J[j] = friction.total, estimate.theta_d, gears.fused
             out.external[j], out.felt[j] = gears.external, momentum.residual
@@ -143,8 +145,9 @@ class LogController:
     def _look(self, t: float, estimate: Estimate, planned: bool) -> list[LogNotice]:
         """What a tick tells; `planned`: no hand leads the arm."""
         sample, settings = self._sample, self._settings
-        self._sources.read(sample, estimate, self._estimator.jacobian, settings.contact, looks=True)
-        self._watch.read(sample, estimate, None, free=not planned)
+        estimate.signals = self._sources.read(sample, estimate, self._estimator.jacobian, settings.contact, looks=True)
+        watched = self._watch.read(sample, estimate, None, free=not planned)
+        estimate.clipped, estimate.link_force, estimate.following, estimate.motion = watched
         mode = Mode.NORMAL if planned else Mode.FREE_DRIVE
         told = [
             LogNotice(t, f"contact {each.change.value}", each.part, math.hypot(*each.force), each.rule)

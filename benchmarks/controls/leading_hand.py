@@ -77,7 +77,7 @@ class Hand:
     def tick(self, *touches: Touch) -> Array:
         """One tick; the force (3,) of the first touch, in W [N]."""
         before, self.free = self.free, self.simulation.tick(Wishes(NOTHING, touches, ())).mode is Mode.FREE_DRIVE
-        self.fall = self.fall or (before and not self.free and self.simulation.estimate.joints_feel is JointsFeel.FALL)
+        self.fall = self.fall or (before and not self.free and self.simulation.estimate.whose.joints_feel is JointsFeel.FALL)
         return np.array(self.plant.hands.touched[0][2]) if touches else np.zeros(3)
 
     def wait(self, seconds: float) -> None:

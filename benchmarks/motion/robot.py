@@ -44,7 +44,6 @@ def standing(q: Array) -> Estimate:
         v_F=np.zeros(6),
         v_tcp=0.0,
         v_elbow=0.0,
-        move_done=0,
     )
 
 

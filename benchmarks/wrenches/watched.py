@@ -10,7 +10,7 @@ from benchmarks.hold import IDLE, enter, flange, lift
 from benchmarks.payload import Case, simulation
 from benchmarks.use import free_way
 from pendant.all_settings import Settings, apply
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
 from sim.plant.changes import AnyChange, DropPayload, SensorFault
@@ -67,11 +67,11 @@ class Watch:
         estimate = self._device.estimate
         self._ticks += 1
         if self._known == math.inf:
-            self._odds = max(self._odds, estimate.lost_odds)
-            self._stepped = max(self._stepped, estimate.step_odds)
-            if estimate.lost_odds >= KNOWN:
+            self._odds = max(self._odds, estimate.whose.lost_odds)
+            self._stepped = max(self._stepped, estimate.whose.step_odds)
+            if estimate.whose.lost_odds >= KNOWN:
                 self._known = self._ticks
-            if estimate.step_odds >= SUSPECTED:
+            if estimate.whose.step_odds >= SUSPECTED:
                 self._told = min(self._told, self._ticks)
         return decision.mode is Mode.FREE_DRIVE
 

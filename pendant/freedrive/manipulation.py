@@ -87,7 +87,7 @@ def _touch(estimate: Estimate, wrench: Wrench | None) -> float:
     """Force at the flange of a hand that touches a link of a standing arm [N]; 0 without the flange sensor."""
     if wrench is None:
         return 0.0
-    x, y, z = estimate.F_touch.tolist()
+    x, y, z = estimate.whose.F_touch.tolist()
     return norm((x, y, z))
 
 
@@ -95,5 +95,5 @@ def _link_force(estimate: Estimate, wrench: Wrench | None) -> Vector:
     """Force of a hand on a link, axes of B [N]: it is told beside the flange sensor alone."""
     if wrench is None:
         return ORIGIN
-    x, y, z = estimate.F_link.tolist()
+    x, y, z = estimate.whose.F_link.tolist()
     return x, y, z

@@ -215,7 +215,7 @@ class Periods:
 
 def _creeps(estimate: Estimate, moves: float) -> bool:
     """A payload that may have fallen explains all that the joints feel, and the flange is slower than an arm that moves [m/s]."""
-    if estimate.joints_feel is not JointsFeel.FALL:
+    if estimate.whose.joints_feel is not JointsFeel.FALL:
         return False
     x, y, z = estimate.v_F.tolist()[:3]
     return norm((x, y, z)) < moves

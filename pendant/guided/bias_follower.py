@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW
-from pendant.sensor.hand_model import SLOWEST, STEADY, TOUCH, TREMOR
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF, SLOWEST, STEADY, TOUCH, TREMOR
 from pendant.sensor.sensor_errors import CENTRE, LEVER, load_weight, window_error
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks

@@ -15,7 +15,7 @@ from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split
 from pendant.limits.soft_limits import Damping, SoftLimits
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench, norm
 
@@ -108,12 +108,12 @@ class EndingWatch:
             driven: a wall or another device moves the arm, or holds it.
             slack: what may be the sensor's drift.
         """
-        odds = estimate.lost_odds if self._on.payload and baseline is not None else -math.inf
-        stepped = estimate.step_odds if self._on.sensor and baseline is not None else -math.inf
+        odds = estimate.whose.lost_odds if self._on.payload and baseline is not None else -math.inf
+        stepped = estimate.whose.step_odds if self._on.sensor and baseline is not None else -math.inf
         self.suspect = odds >= SUSPECTED or stepped >= -SUSPECTED
-        fell = baseline is None and self._on.payload and estimate.payload_fell
+        fell = baseline is None and self._on.payload and estimate.whose.payload_fell
         if fell or odds >= KNOWN:
-            mass = self._held if fell else estimate.lost_share * self._held
+            mass = self._held if fell else estimate.whose.lost_share * self._held
             return Ending(Kind.STOPPED_PAYLOAD, {"mass": -mass, "force": abs(mass) * GRAVITY})
         torque = ORIGIN if baseline is None else _torque(estimate, baseline)
         soft = self._soft

@@ -6,10 +6,9 @@ from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.bias_follower import SURE, UNUSED
 from pendant.guided.endings import EndingWatch
-from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
 from pendant.guided.pull import HandFelt, PullCauses, felt
 from pendant.guided.sensor_bias import SensorBias
-from pendant.guided.user_force import UserForce
+from pendant.guided.user_force import TakenForce, UserForce, upward_in_flange
 from pendant.limits.axis_locks import axis_locks
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import SingularityWatch
@@ -128,8 +127,9 @@ class FreeArm:
         if reading is not None and not before:
             events.append(Event(Kind.WALL_REACHED, tick, facts(reading)))
         self._zones.step(estimate)
-        if self._singularity.step(estimate.singularity, settings.axes) and axis_locks(settings.axes) is not None:
-            values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
+        near = around.status.singularity
+        if self._singularity.step(near, settings.axes) and axis_locks(settings.axes) is not None:
+            values: Values = {"status": self._singularity.status, "value": near, "limit": settings.axes.near}
             events.append(Event(Kind.SINGULARITY, tick, values))
         self.singularity = self._singularity.status
         baseline = bias.baseline if bias.used else None
@@ -139,7 +139,7 @@ class FreeArm:
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force)
         self.pressed = self._pressed(settings, tick)
-        self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
+        self.taken = hand.taken(slack.force, self._hung, use_wrench=bias.used)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)
@@ -155,7 +155,7 @@ class FreeArm:
     def _pull(self, estimate: Estimate, least: float) -> PullCauses:
         """What pulls at the arm in this tick: a hand's force is at least so large [N]."""
         if not self._bias.used:
-            return PullCauses(HandFelt.FLANGE if estimate.joints_feel is JointsFeel.HAND else HandFelt.NOBODY)
+            return PullCauses(HandFelt.FLANGE if estimate.whose.joints_feel is JointsFeel.HAND else HandFelt.NOBODY)
         hand = self._hand
         who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=self._operation.moved)
-        return PullCauses(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds)
+        return PullCauses(who, estimate.whose.lost_odds, estimate.whose.lost_share, estimate.whose.step_odds)

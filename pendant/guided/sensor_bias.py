@@ -13,7 +13,7 @@ from pendant.guided.bias_follower import BiasFollower, Slack, added, drift, with
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
-from pendant.sensor.odds import KNOWN
+from pendant.sensor.hand_model import KNOWN
 from pendant.sensor.sensor_errors import LEVER, load_weight
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
@@ -105,8 +105,8 @@ class SensorBias:
         x, y, z = estimate.F_joints.tolist()
         fx, fy, fz = self._felt
         self._felt = (fx + SMOOTH * (x - fx), fy + SMOOTH * (y - fy), fz + SMOOTH * (z - fz))
-        if estimate.step_odds >= KNOWN and estimate.step_force >= self._least(force, estimate.tick):
-            return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": estimate.step_force})
+        if estimate.whose.step_odds >= KNOWN and estimate.whose.step_force >= self._least(force, estimate.tick):
+            return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": estimate.whose.step_force})
         if not waits:
             self._drift.pause()
             # A sensor that has drifted far seems to be a hand as well, but moves nothing.

@@ -6,10 +6,10 @@ on a link is felt by the joints alone: beside the sensor the estimator tells whi
 """
 
 import math
+from typing import NamedTuple
 
 from pendant.limits.residual import upward
-from pendant.sensor.hand_model import KEEPS, STEADY
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF, KEEPS, STEADY
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, dot, flat, norm, turned_back
@@ -21,6 +21,22 @@ JOINTS_SWING = 2.0 * SWING
 """The same of what the joints feel, and of the force lately [s]: between them and the flange are the gears."""
 
 _SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (KEEPS, STEADY, SWING, JOINTS_SWING))
+
+
+class Doubts(NamedTuple):
+    """What there is to say how far off the force may be that the flange sensor tells."""
+
+    change: Vector  # all that it feels beyond what it felt at entry, axes of B [N]
+    fluctuation: float  # mean square of what it felt lately beside its mean, all axes together [N²]
+    slack: float  # what it may tell without a hand [N]
+    hung: Vector  # upward at entry, axes of F
+
+
+class TakenForce(NamedTuple):
+    """What free-drive takes for the user's force."""
+
+    force: Vector  # axes of B [N]
+    doubts: Doubts | None  # None: the joints tell it
 
 
 class UserForce:
@@ -92,6 +108,17 @@ class UserForce:
         ox, oy, oz = self._baseline
         self._baseline = (ox + x, oy + y, oz + z)
 
+    def taken(self, slack: float, hung: Vector, *, use_wrench: bool) -> TakenForce:
+        """What is told of this tick; where the flange sensor is used, the joints may still tell more.
+
+        Args:
+            slack: what it may tell without a hand [N].
+            hung: upward at entry, axes of F.
+            use_wrench: it is used.
+        """
+        doubts = None if self.by_joints or not use_wrench else Doubts(self.change, self.fluctuation, slack, hung)
+        return TakenForce(self.user, doubts)
+
     def step(self, estimate: Estimate, use_wrench: bool, moves: float) -> None:
         """One tick; its joint values are finite. Without a valid sensor the joints alone tell.
 
@@ -109,7 +136,7 @@ class UserForce:
         by += _JOINTS * (y - residual * uy - by)
         bz += _JOINTS * (z - residual * uz - bz)
         self._by_joints = (bx, by, bz)
-        user = self._by_joints if estimate.joints_feel is _HAND else ORIGIN
+        user = self._by_joints if estimate.whose.joints_feel is _HAND else ORIGIN
         self.by_joints = user is not ORIGIN
         if use_wrench:
             (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
@@ -130,11 +157,16 @@ class UserForce:
             sy += _SENSOR * (y - slow * uy - sy)
             sz += _SENSOR * (z - slow * uz - sz)
             self._by_sensor = (sx, sy, sz)
-            x, y, z = estimate.F_link.tolist()
+            x, y, z = estimate.whose.F_link.tolist()
             self.by_joints = (x, y, z) != ORIGIN
             user = (sx + x, sy + y, sz + z)
         self.user = user if norm(user) >= self._doubt else ORIGIN
         self.payload = (residual * ux, residual * uy, residual * uz)
+
+
+def upward_in_flange(estimate: Estimate) -> Vector:
+    """Upward, in axes of F."""
+    return turned_back(flat(estimate.R_BF), upward(estimate.g_B.tolist()))
 
 
 def _triple(values: list[float]) -> Vector:

@@ -12,6 +12,7 @@ from pendant.settings.schema import ticks
 from pendant.signals.keep_alive import KeepAlive
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
+from pendant.tick.motion_status import MotionStatus
 
 JOGGED_IN = frozenset({Mode.NORMAL, Mode.TEACH})
 
@@ -28,7 +29,16 @@ class Jogging:
         self._spent = False  # this press has ended, and has to be let go first
         self._start: JogPlace | None = None  # where the arm began to be jogged
 
-    def step(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event], *, changing: bool) -> None:
+    def step(
+        self,
+        estimate: Estimate,
+        inputs: Inputs,
+        settings: Settings,
+        events: list[Event],
+        *,
+        status: MotionStatus,
+        changing: bool,
+    ) -> None:
         """One tick.
 
         Args:
@@ -36,6 +46,7 @@ class Jogging:
             inputs: of this tick.
             settings: as they are now.
             events: of this tick; more are added.
+            status: what the control law did in the last tick.
             changing: the configured payload is being changed.
         """
         held, wish = self._held, inputs.jog
@@ -56,8 +67,8 @@ class Jogging:
             return
         against = self._against(estimate, changing)
         if self._robot.jog is not None:
-            done = estimate.move_done == self._robot.jog.id
-            reason = "done" if done else estimate.move_refused or against
+            done = status.done == self._robot.jog.id
+            reason = "done" if done else status.refused or against
             if reason:
                 self._end(reason, estimate, events)
                 self._spent = True

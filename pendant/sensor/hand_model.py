@@ -1,8 +1,10 @@
-"""What is taken for a hand's force: the numbers that tell it from a payload's weight and from a sensor's drift (FD-3, FD-19).
+"""What is taken for a hand's force, and how sure is sure enough that it is none (FD-3, FD-19).
 
-Rules and hypotheses of whose force it is know a hand by these, and by the setting `unexplained.force`; benches `guided`, `use`,
-`drop` and `drift` hold them.
+Rules and hypotheses of whose force it is know a hand by these numbers, and by the setting `unexplained.force`; benches `guided`,
+`use`, `drop` and `drift` hold them.
 """
+
+import math
 
 from pendant.settings.schema import ticks
 
@@ -43,3 +45,22 @@ LASTS = ticks(KEEPS)
 
 STEADY = 5.0
 """So long no hand holds still to within its tremor [s]; and so long it may lead a moving arm gently up or down."""
+
+TOUCHES = 2000.0
+"""Of so many grabs and let-goes at most one may be taken for a payload that falls (bench `observer`, `drop`)."""
+
+KNOWN = math.log(TOUCHES * TOUCH)
+"""Log of the odds from which on it is known [nats]: else odds of K come up in one of K trials at most (Ville)."""
+
+SUSPECTED = math.log(20.0)
+"""From here on a payload may have changed, and nothing helps a hand: the help may be gone in one tick of 20. A sensor may have
+stepped until a hand is as much likelier, for the help for a step moves an arm that nobody touches."""
+
+NOISE = 0.1
+"""Share of the ticks in which noise may make something else of a fall, as the joints feel it. Bench `guided` guards it."""
+
+RARELY = 3.29
+"""Standard deviations that an error exceeds once in a thousand times."""
+
+HALF = 0.5
+"""Of what is asked for, or allowed, this share decides where no model says how much of it is to be expected."""

@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from pendant.limits.residual import PayloadError
 from pendant.limits.validity import WINDOW
-from pendant.sensor.hand_model import STEADY
-from pendant.sensor.odds import RARELY
+from pendant.sensor.hand_model import RARELY, STEADY
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate

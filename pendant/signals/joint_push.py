@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from pendant.sensor.odds import HALF, RARELY
+from pendant.sensor.hand_model import HALF, RARELY
 from pendant.signals.contact_free_baseline import Untouched
 from pendant.signals.push_signal import STAYS
 from pendant.signals.settings import JointPush

@@ -74,6 +74,35 @@ class JointsFeel(IntEnum):
     HAND = 2  # neither
 
 
+_NO_FORCE = np.zeros(3)
+_NO_FORCE.flags.writeable = False  # all estimates share it
+
+
+class WhoseForce(NamedTuple):
+    """What moves the free arm, as far as flange sensor and joints tell; outside free-drive nothing is told."""
+
+    lost_odds: float = -math.inf  # log of the odds that the payload is gone, not a hand that changed [nats]
+    lost_share: float = 0.0  # of the payload that is gone then
+    step_odds: float = -math.inf  # log of the odds that the flange sensor stepped, the same way [nats]
+    step_force: float = 0.0  # size of the step then [N]
+    payload_fell: bool = False  # as the joints tell, without a valid flange sensor
+    joints_feel: JointsFeel = JointsFeel.NOTHING  # there, too
+    tau_hand: Array = _no_joints()  # (n,) of a hand, on a link with that sensor [N·m]
+    tau_certain: Array = _no_joints()  # (n,) what of it a hand makes for certain in this tick [N·m]
+    powers: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of tau_hand, tau_certain, friction [W]
+    energy: float = 0.0  # kinetic, of links and rotors [J]
+    F_link: Array = _NO_FORCE  # force on the flange that explains tau_hand best, in B, with a valid flange sensor [N]
+    F_touch: Array = _NO_FORCE  # the same of a touch of a standing arm [N]
+
+    def copy(self) -> "WhoseForce":
+        """The same values in arrays of their own."""
+        torques = {"tau_hand": self.tau_hand.copy(), "tau_certain": self.tau_certain.copy()}
+        return self._replace(**torques, F_link=self.F_link.copy(), F_touch=self.F_touch.copy())
+
+
+NOT_ASKED = WhoseForce()
+
+
 @dataclass(slots=True)
 class Estimate:
     """The estimator's result for one tick, n joints. Arrays are owned by the estimator and valid until its next update.
@@ -101,9 +130,6 @@ class Estimate:
     v_F: Array  # (6,) flange velocity: linear [m/s], then angular [rad/s], axes of B, at the flange origin
     v_tcp: float  # speed of the tool centre point [m/s]
     v_elbow: float  # speed of the elbow [m/s]
-    move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
-    move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
-    move_wall: str = ""  # the area at whose border it has stopped that move
     following: FollowingError = ON_PATH  # of the arm against its reference
     link_force: LinkForce = NO_LINK_FORCE  # on a link; of what the flange carries, too, without a valid flange sensor
     motion: MotionMeasures = STANDS
@@ -122,24 +148,12 @@ class Estimate:
     tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
-    F_link: Array = field(default_factory=lambda: np.zeros(3))  # (3,) the same of tau_hand, with a valid flange sensor [N]
-    F_touch: Array = field(default_factory=lambda: np.zeros(3))  # (3,) of a touch of a standing arm, likewise [N]
-    tau_hand: Array = field(default_factory=_no_joints)  # (n,) of a hand, on a link with that sensor; in free-drive only [N·m]
-    tau_certain: Array = field(default_factory=_no_joints)  # (n,) what of it a hand makes for certain in this tick [N·m]
-    powers: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of tau_hand, tau_certain, friction; in free-drive only [W]
+    whose: WhoseForce = NOT_ASKED
     a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
     current: Array = field(default_factory=_no_joints)  # (n,) measured motor current, as a share of the largest that it may have
     load_mass: float = 0.0  # configured: payload and tool [kg]
-    energy: float = 0.0  # kinetic, of links and rotors; in free-drive only [J]
-    lost_odds: float = -math.inf  # log of the odds that the payload is gone, not a hand that changed; in free-drive only [nats]
-    lost_share: float = 0.0  # of the payload that is gone then
-    step_odds: float = -math.inf  # log of the odds that the flange sensor stepped, the same way [nats]
-    step_force: float = 0.0  # size of the step then [N]
-    payload_fell: bool = False  # as the joints tell, in free-drive without a valid flange sensor
-    joints_feel: JointsFeel = JointsFeel.NOTHING  # there, too
     missing_mass: tuple[float, float] = (0.0, math.inf)  # payload beyond the configured one, its deviation; without sensor [kg]
     tau_blur: tuple[float, ...] = ()  # (n,) what the output encoders make of tau_ext, at most; (): nothing is known [N·m]
-    singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -148,4 +162,5 @@ class Estimate:
             value = getattr(self, each.name)
             if isinstance(value, np.ndarray):
                 setattr(twin, each.name, value.copy())
+        twin.whose = self.whose.copy()
         return twin

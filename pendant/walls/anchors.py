@@ -1,8 +1,8 @@
 """Where a wall round a part is anchored, and when anew: fixed, stepwise, average, user (VW-3 to VW-5).
 
 A fallen or too heavy payload must not take its wall along. So a part counts as moved by somebody only when a user force acts
-on it, when somebody pays for its motion (`guided.work`), or when it moved against the force of the payload-like residual, which
-no payload does by itself.
+on it, when somebody pays for its motion (`unintended_motion`), or when it moved against the force of the payload-like residual,
+which no payload does by itself.
 """
 
 import math

@@ -133,13 +133,13 @@ class Containment:
         held = tuple([area for area in switched if isinstance(area, Area) and area.triggers_reduced is triggers])
         return Areas(self.borders, walls, Workspace(held, self._frames) if held else None)
 
-    def reached(self, estimate: Estimate, walls: WallSettings) -> list[Event]:
-        """The event of a motion that was stopped at a border, as `Estimate.move_wall` says."""
+    def reached(self, estimate: Estimate, wall: str, walls: WallSettings) -> list[Event]:
+        """The event of a motion that was stopped at the border of the area `wall`."""
         space = self.workspace(walls)
         names = [] if space is None else [area.name for area in space.areas]
-        if space is None or estimate.move_wall not in names:
+        if space is None or wall not in names:
             return []  # it was deleted in this moment
-        near = space.nearby(names.index(estimate.move_wall), self._seen(estimate))
+        near = space.nearby(names.index(wall), self._seen(estimate))
         return [Event(Kind.MOTION_AT_WALL, estimate.tick, facts(near))]
 
     def change(self, borders: tuple[AnyBorder, ...], where: str, tick: int) -> list[Event]:
@@ -186,7 +186,7 @@ class Containment:
             estimate: of this tick.
             user: the user's force, axes of B [N].
             payload: force of the payload-like residual, axes of B [N].
-            led: somebody pays for the arm's motion (`pendant.guided.work`).
+            led: somebody pays for the arm's motion (`pendant.guided.unintended_motion`).
         """
         if self._enclosure is None:
             return None

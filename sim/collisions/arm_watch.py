@@ -4,6 +4,7 @@ All in one kernel: to call one takes as long as all that it does here.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,15 @@ from sim.sensing.sensors import Sample
 Array = NDArray[np.float64]
 
 END = 0.95  # share of the flange sensor's range from which its value may be less than what is there
+
+
+class ArmSeen(NamedTuple):
+    """What a tick tells, as in `Estimate`."""
+
+    clipped: bool
+    link_force: LinkForce
+    following: FollowingError
+    motion: MotionMeasures
 
 
 class ArmWatch:
@@ -58,8 +68,8 @@ class ArmWatch:
         """So much (6,) is subtracted from the flange sensor's values [N, N·m]."""
         self._own[0]["zero"] = zero
 
-    def read(self, sample: Sample, estimate: Estimate, wanted: Array | None, *, free: bool) -> None:
-        """Put what is watched into `estimate`; no force in free-drive, where a hand may push at any link, nor while the observer
+    def read(self, sample: Sample, estimate: Estimate, wanted: Array | None, *, free: bool) -> ArmSeen:
+        """What is watched; no force in free-drive, where a hand may push at any link, nor while the observer
         has just begun, for it may be an error.
 
         Args:
@@ -71,10 +81,9 @@ class ArmWatch:
         feels, q = self._momentum.ready and not free, estimate.q
         felt = (sample.wrench, estimate.F_user, q, q if wanted is None else wanted, estimate.qd)
         force, parts, clipped, error, motion = _watch(self._models, self._shapes, (self._elbow, feels), felt)
-        estimate.clipped = clipped and sample.wrench_valid
-        estimate.link_force = NO_LINK_FORCE if force[0] < 0 else LinkForce(*force, parts=parts)
-        estimate.following = ON_PATH if wanted is None else FollowingError(*error)
-        estimate.motion = MotionMeasures(*motion)
+        link = NO_LINK_FORCE if force[0] < 0 else LinkForce(*force, parts=parts)
+        following = ON_PATH if wanted is None else FollowingError(*error)
+        return ArmSeen(clipped and sample.wrench_valid, link, following, MotionMeasures(*motion))
 
 
 @kernel

@@ -1,5 +1,8 @@
 """The control law of each mode: what the decision asks for becomes motor currents."""
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,6 +10,7 @@ from pendant.all_settings import FedBackTorque, JointControl
 from pendant.decision import Decision
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
+from pendant.tick.motion_status import MotionStatus
 from sim.arm.arm_file import Arm
 from sim.arm.joint_constants import JointConstants
 from sim.control.feed_forward import FeedForward
@@ -15,10 +19,19 @@ from sim.control.free_drive_law import FreeDriveLaw
 from sim.control.motor_controller import MotorController
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.estimation.transmission_torque import DEFLECTION, DYNAMICS, MOTOR
+from sim.motion.moves import Reference
 from sim.motion.references import STANDING, References
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
+
+
+class Controlled(NamedTuple):
+    """What the controller did in a tick."""
+
+    current: Array  # of the motors (n,) [A]
+    status: MotionStatus
+    answered: Reference | None  # that the next tick's measurement answers to; None in free-drive and where a new one has begun
 
 
 class Controller:
@@ -64,8 +77,8 @@ class Controller:
         friction: AdaptiveFriction,
         stiffer: Array,
         use: JointControl,
-    ) -> Array:
-        """Motor currents (n,) [A] for this tick.
+    ) -> Controlled:
+        """One tick.
 
         Args:
             estimate: this tick's estimate.
@@ -99,7 +112,11 @@ class Controller:
         self._law, self._torque = law, None if law is _OFF else torque
         if law is not _BRAKE:
             self._followed = law is _FOLLOW
-        return self.motor.current(torque, estimate.theta_d)
+        references = self.references
+        refused, singular = references.refusal, self.free_drive.singularity.value if law is _FREE else math.inf
+        wall = references.keeper.wall if refused else ""
+        status = MotionStatus(references.move_done, refused, wall, references.commanding, singular)
+        return Controlled(self.motor.current(torque, estimate.theta_d), status, references.answered)
 
     def _keep_torque_of_blind_joints(self, estimate: Estimate, torque: Array) -> None:
         """Without its motor angle a joint keeps the torque of the tick before, until its brake holds it.

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
-from pendant.guided.work import LEFT
+from pendant.guided.unintended_motion import LEFT
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Phase

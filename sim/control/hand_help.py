@@ -81,7 +81,7 @@ class HandHelp:
 
     def take_off(self, estimate: Estimate, friction: AdaptiveFriction, share: float, torque: Array) -> None:
         """Take at most this share of the friction off the hand; a joint of which nothing is asked is braked."""
-        felt = estimate.tau_hand, estimate.tau_certain, estimate.friction, estimate.theta_d, share
+        felt = estimate.whose.tau_hand, estimate.whose.tau_certain, estimate.friction, estimate.theta_d, share
         _take_off(self._record, friction.record, felt, torque)
 
 

@@ -93,7 +93,7 @@ class ContactSources:
         self._drive = flange_drive(sensors, float(own["smoothing"]))
         own["joints"] = elbow, elbow + 1
         own["gravity"], own["reach"] = dynamics.gravity_B, reach
-        self._numbers, self._started = own["numbers"], False
+        self._numbers, self._started, self._looked = own["numbers"], False, False
         self._signals = self._numbers[: len(LISTED) * WIDTH]
         self._out = self._signals.reshape((len(LISTED), WIDTH))
         self._joints, self._elbow = n, elbow
@@ -113,8 +113,8 @@ class ContactSources:
         self._own["reach"] = self._range - [np.abs(zero[:3]).max(), np.abs(zero[3:]).max()]
         self._momentum.forget_zero()
 
-    def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse, *, looks: bool) -> None:
-        """Put this tick's signals into `estimate`.
+    def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse, *, looks: bool) -> ContactSignals:
+        """This tick's signals.
 
         Args:
             sample: this tick's measurements.
@@ -124,10 +124,10 @@ class ContactSources:
             looks: somebody looks for contacts; else there is a gap, and earlier samples no longer count.
         """
         if not looks:
-            if estimate.signals is not NOT_READ:
-                self._own["turn"], self._drive["count"], self._started = np.nan, 0, False
-                estimate.signals = NOT_READ
-            return
+            if self._looked:
+                self._own["turn"], self._drive["count"], self._started, self._looked = np.nan, 0, False, False
+            return NOT_READ
+        self._looked = True
         if estimate.tick % MASS_TICKS == 1:
             lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, self._load)
             self._out[:, EFFECTIVE_MASS] = max(LEAST_MASS, lightest)
@@ -140,9 +140,8 @@ class ContactSources:
         self._started = links
         valid = (pair, flange, links, links)
         if links:
-            estimate.signals = ContactSignals(self._numbers.copy(), valid, self._joints, self._elbow, stands)
-        else:
-            estimate.signals = ContactSignals(self._signals.copy(), valid)
+            return ContactSignals(self._numbers.copy(), valid, self._joints, self._elbow, stands)
+        return ContactSignals(self._signals.copy(), valid)
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import FrictionFrom, JointControl
-from pendant.tick.estimate import Estimate
+from pendant.decision import EstimatorCommand
+from pendant.tick.estimate import Estimate, WhoseForce
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
@@ -27,15 +28,15 @@ from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import JointTorques, PayloadFall
 from sim.estimation.torque_balance import NOT_TOLD, balance, missing_mass
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
+from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
-from sim.flange.whose_force import WhoseForce
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import Sample
 
 Array = NDArray[np.float64]
 
-SHIPPED = JointControl()
+AT_FIRST = EstimatorCommand()
 _DEFLECTION = FrictionFrom.DEFLECTION  # looked up in every tick
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
@@ -93,32 +94,27 @@ class Estimator:
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
-        self.whose_force = WhoseForce(arm, self.forces)
+        self.whose_force = ExternalWrench(arm, self.forces)
         self.momentum = MomentumObserver(arm, dynamics)
         joints = JointTorques(self.momentum, self.transmission, self._deflection)
-        self.fall = PayloadFall(arm, dynamics.recursion, joints, self.whose_force.bank)
+        self.fall = PayloadFall(arm, dynamics.recursion, joints, self.whose_force)
         self.link_hand = LinkHand(arm, dynamics.recursion, self.momentum)
-        self._bears = self.transmission.record, dynamics.recursion.record, self.whose_force.bank.record, self._ways
+        self._bears = self.transmission.record, dynamics.recursion.record, self.whose_force.record, self._ways
         self._known: Estimate | None = None
         self.tick = 0
 
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange; the `payload`, a part of the load, may get lost."""
         self.forces.set_load(load)
-        self.whose_force.bank.set_load(load, payload)
+        self.whose_force.set_load(load, payload)
 
     def update(
         self,
         sample: Sample,
-        move_done: int,
-        move_refused: str,
-        move_wall: str = "",
+        command: EstimatorCommand = AT_FIRST,
         *,
-        use: JointControl = SHIPPED,
         answered: Reference | None = None,
         learn: bool = True,
-        bias: tuple[float, ...] | None = None,
-        unsure: float = 0.0,
     ) -> Estimate:
         """Take the measurements of one tick.
 
@@ -126,17 +122,13 @@ class Estimator:
 
         Args:
             sample: this tick's measurements.
-            move_done, move_refused, move_wall: as in `Estimate`.
-            use: says which sources the torques come from.
+            command: of the last decision; its tool, payload and zero are in the models and in the sample.
             answered: motion that was wanted at the time of the measurement, or None. With a motion the filters follow the
                 deviation from it, so they do not lag behind a planned acceleration.
             learn: False while a hand may move the arm: friction stays as known, and the gears are not compared with the rigid
                 model.
-            bias: bias of the flange sensor in free-drive, in axes of F [N, N·m]; None outside free-drive.
-            unsure: standard deviation of each axis of the bias, without the sensor's noise [N]. If it is infinite, the sensor is
-                not used, and only the joints tell whose force it is.
         """
-        dynamics = self._dynamics
+        dynamics, bias, unsure = self._dynamics, command.bias, command.unsure
         self.tick += 1
         theta, q = self._theta, self._q
         angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
@@ -161,7 +153,7 @@ class Estimator:
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
         sensed = sample.wrench_valid and math.isfinite(unsure)  # valid and used
-        self._observe(sample, sensed, self._estimate_torques(sample, use, learn) and learn)
+        self._observe(sample, sensed, self._estimate_torques(sample, command.use, learn) and learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known, valid = self._known, sample.joints_valid
         if known is None:
@@ -170,11 +162,10 @@ class Estimator:
         known.joints_valid, known.wrench_valid, known.acceleration_valid = valid, sample.wrench_valid, sample.acceleration_valid
         known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
-        known.move_done, known.move_refused, known.move_wall = move_done, move_refused, move_wall if move_refused else ""
         known.degraded = not valid and self.started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(*self._bears)
-        known.load_mass, known.singularity = dynamics.load.mass, math.inf
+        known.load_mass = dynamics.load.mass
         if bias is not None or self._free:
             self._free = bias is not None
             self._ask_whose(known, bias if sensed else None, unsure)
@@ -183,16 +174,17 @@ class Estimator:
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None, unsure: float) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
         odds = self.whose_force.update(bias, unsure, accelerations=known.acceleration_valid)
-        known.lost_odds, known.lost_share, known.step_odds, known.step_force = odds
-        known.energy = self._dynamics.recursion.energy.item() + self._spin.item()
-        known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
+        energy = self._dynamics.recursion.energy.item() + self._spin.item()
+        fell, feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
+        link, qd = self.link_hand, self._q[1]
         if bias is None:
-            self.link_hand.forget()
-            known.tau_hand, known.tau_certain = self.fall.torque, self.fall.certain
+            link.forget()
+            hand, certain = self.fall.torque, self.fall.certain
         else:
-            self.link_hand.update(bias, self._q[1], self._ways[DEFLECTION])
-            known.tau_hand, known.tau_certain = self.link_hand.torque, self.link_hand.certain
-        known.powers = powers(self._q[1], known.tau_hand, known.tau_certain, known.friction)
+            link.update(bias, qd, self._ways[DEFLECTION])
+            hand, certain = link.torque, link.certain
+        done = powers(qd, hand, certain, known.friction)
+        known.whose = WhoseForce(*odds, fell, feel, hand, certain, done, energy, link.force, link.touch)
 
     def _all(self, sample: Sample) -> Estimate:
         """The estimate that every tick renews: most of it are arrays that are written in place."""
@@ -219,7 +211,6 @@ class Estimator:
             v_F=rigid.v_F,
             v_tcp=0.0,
             v_elbow=0.0,
-            move_done=0,
             g_B=self._dynamics.gravity_B,
             theta_dd=theta[2],
             friction=friction.total,
@@ -228,10 +219,7 @@ class Estimator:
             tcp=rigid.tcp,
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,
-            F_link=self.link_hand.force,
-            F_touch=self.link_hand.touch,
-            tau_hand=self.link_hand.torque,
-            tau_certain=self.link_hand.certain,
+            whose=WhoseForce(tau_hand=np.zeros_like(self.q), tau_certain=np.zeros_like(self.q)),
             current=self._current,
             tau_blur=self._blur,
         )

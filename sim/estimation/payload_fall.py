@@ -41,7 +41,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.sensor.odds import HALF, RARELY, SUSPECTED
+from pendant.sensor.hand_model import HALF, RARELY, SUSPECTED
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
-from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Scenario
+from sim.exchange.told_force import UncertainForce
 from sim.gripping.finger_drive import GripperState
 
 
@@ -52,11 +52,11 @@ class Snapshot:
     @property
     def p_FT(self) -> NDArray[np.float64]:
         """(3,) The centre point of the tool in use, in F [m]; the flange's own where none is fitted."""
-        fitting = self.decision.fitting
+        fitting = self.decision.estimator.fitting
         return np.zeros(3) if fitting is None else np.array(fitting.tool.tcp)
 
     @property
     def R_FT(self) -> NDArray[np.float64]:
         """(3, 3) How the tool in use is turned in F; not at all where none is fitted."""
-        fitting = self.decision.fitting
+        fitting = self.decision.estimator.fitting
         return np.eye(3) if fitting is None else rotation_from_rpy(fitting.tool.rpy)

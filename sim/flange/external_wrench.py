@@ -6,6 +6,7 @@ all onsets are summed, each as likely as another. So what is compared are probab
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from sim.arm.chain import Body
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.flange.flange_forces import FlangeForces, about_flange, needed, turn_both
+from sim.flange.step_answer import StepAnswer, answer
 from sim.flange.wrench_hand import ahead, hand
 from sim.flange.wrench_hypotheses import (
     BEFORE,
@@ -44,14 +46,26 @@ KEPT = LONGEST + BEFORE + 1
 """Ticks: the longest change, the one in which it came, and those before."""
 
 
+class Odds(NamedTuple):
+    """Of a tick: logs of odds against all else [nats], minus infinity where nothing is suspected."""
+
+    lost: float  # that the payload changed
+    share: float  # of the payload that is gone then
+    stepped: float  # that the sensor stepped
+    step: float  # size of that step [N]
+
+
+NO_ODDS = Odds(-math.inf, 0.0, -math.inf, 0.0)
+
+
 class ExternalWrench:
-    """What the bank of hypotheses keeps; `compare` is one tick of it, in free-drive alone."""
+    """The bank of hypotheses: what is asked of the flange sensor in free-drive."""
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
         """
         Args:
             arm: the noise of its flange sensor, accelerometer and gyro.
-            forces: know the rigid model.
+            forces: run in the same tick before.
         """
         self.record = record(
             noise=(2,),  # of the sensor in a tick [N, N·m]
@@ -90,6 +104,8 @@ class ExternalWrench:
             age="i8",  # ticks since it
         )
         own = self._own = self.record[0]
+        self._known = forces.record, forces.model
+        self._answer, self._begun = StepAnswer(arm.n, arm.accuracy.stiffness), False
         gyro, told = arm.sensors.gyro, sensor_spec(arm)
         self._beyond = sum(arm.masses.mass[arm.chain.elbow :])  # the elbow: what springs there do not hold back
         own["noise"] = told.noise_force, told.noise_torque
@@ -113,6 +129,23 @@ class ExternalWrench:
         own["moves"] = load.mass + self._beyond
         self.forget()
 
+    def update(self, bias: tuple[float, ...] | None, unsure: float = 0.0, *, accelerations: bool) -> Odds:
+        """One tick.
+
+        Args:
+            bias: of the sensor (6,), axes of F [N, N·m]; None: it is not used, and what was before counts no more.
+            unsure: standard deviation of each axis of the bias [N], beside its walk.
+            accelerations: the flange's accelerometer is valid.
+        """
+        if bias is None:
+            if self._begun:
+                self._begun = False
+                self.forget()
+                self._answer.forget()
+            return NO_ODDS
+        self._begun = True
+        return Odds(*_update((self.record, self._answer.record), self._known, (bias, unsure), accelerations))
+
     def forget(self) -> None:
         """Nothing is compared with what was before: free-drive is off, or the sensor was out."""
         own = self._own
@@ -120,15 +153,16 @@ class ExternalWrench:
 
 
 @kernel
-def compare(wrenches, known, bias, accelerations) -> None:
-    """One tick.
+def _update(records, known, bias, accelerations) -> tuple[float, float, float, float]:
+    """One kernel: to call two takes as long as all that they do."""
+    bank, step = records
+    _compare(bank, known, bias, accelerations)
+    answer(step, known, bank)
+    return bank[0].lost, bank[0].share, step[0].odds, step[0].size
 
-    Args:
-        wrenches: `ExternalWrench.record`.
-        known: `FlangeForces.record` and that of the rigid model, of the same tick.
-        bias: of the sensor (6,), axes of F [N, N·m], and the standard deviation of each axis, beside its walk [N].
-        accelerations: the flange's accelerometer is valid.
-    """
+
+@kernel
+def _compare(wrenches, known, bias, accelerations) -> None:
     forces, model = known
     wrench, doubt = bias
     own, felt = wrenches[0], forces[0]

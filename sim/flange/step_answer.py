@@ -21,7 +21,7 @@ import math
 import numpy as np
 
 from pendant.guided.user_force import JOINTS_SWING
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
@@ -77,7 +77,7 @@ class StepAnswer:
 
 @kernel
 def answer(answers, known, wrenches) -> None:
-    """One tick, after `compare`.
+    """One tick, after the odds of it.
 
     Args:
         answers: `StepAnswer.record`.

@@ -31,7 +31,7 @@ def test_measure_the_payload(visit: Callable[..., Page], cell: Cell, width: int,
     page.get_by_text("2.0", exact=False).first.wait_for()
     click(page, "Use this payload")
     cell.wait(lambda: cell.happened(Kind.PAYLOAD_CHANGED), "taken")
-    fitting = cell.loop.latest().decision.fitting
+    fitting = cell.loop.latest().decision.estimator.fitting
     assert fitting is not None
     assert abs(fitting.load.mass - MASS) < ERROR
     cell.pass_time(0.5)

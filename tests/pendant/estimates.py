@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
 from pendant.sensor.sensor_spec import SensorSpec
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, WhoseForce
 
 N = 6
 SENSOR = SensorSpec()
@@ -33,8 +33,6 @@ def estimate(
     tau_J: float | list[float] = 0.0,
     v_tcp: float = 0.0,
     v_elbow: float = 0.0,
-    move_done: int = 0,
-    move_refused: str = "",
     tcp: list[float] | None = None,
     elbow: list[float] | None = None,
     felt: float | list[float] = 0.0,
@@ -77,20 +75,20 @@ def estimate(
         v_F=_wrench(speed, 0.0),
         v_tcp=v_tcp,
         v_elbow=v_elbow,
-        move_done=move_done,
-        move_refused=move_refused,
         tcp=_zeros(6) if tcp is None else np.array(tcp),
         elbow=_zeros(6) if elbow is None else np.array(elbow),
         F_joints=_vector(felt, 3),
         current=_zeros(n),
         load_mass=load_mass,
         friction=_vector(friction, n),
-        energy=energy,
-        tau_hand=_vector(tau_hand, n),
-        tau_certain=_vector(tau_certain, n),
-        powers=(_power(qd, tau_hand), _power(qd, tau_certain), _power(qd, friction)),
-        F_link=_vector(link, 3),
-        F_touch=_vector(touch, 3),
+        whose=WhoseForce(
+            tau_hand=_vector(tau_hand, n),
+            tau_certain=_vector(tau_certain, n),
+            powers=(_power(qd, tau_hand), _power(qd, tau_certain), _power(qd, friction)),
+            energy=energy,
+            F_link=_vector(link, 3),
+            F_touch=_vector(touch, 3),
+        ),
     )
 
 

@@ -17,6 +17,7 @@ from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tick.motion_status import MotionStatus
 from tests.pendant.estimates import estimate
 
 PROGRAM = Program(name="two moves", steps=(JointMove(q=(0.0,) * 6), JointMove(q=(0.1,) * 6)))
@@ -100,8 +101,8 @@ class Driver:
             if step.done:
                 self._move_done = self._current
             value.tick = tick
-            value.move_done = self._move_done
-            decision = self.supervisor.step(value, inputs)
+            status = MotionStatus(self._move_done, "too far" if step.cannot else "")
+            decision = self.supervisor.step(value, inputs, status)
             if decision.move is not None:
                 self._current = decision.move.id
             for event in decision.events:
@@ -122,7 +123,6 @@ def _given(step: Step) -> tuple[Estimate, Inputs]:
         force=step.force,
         felt=step.force,
         tau_ext=step.tau,
-        move_refused="too far" if step.cannot else "",
     )
     button = frozenset({Button.FREE_DRIVE})
     return value, Inputs(

@@ -18,6 +18,7 @@ from pendant.program.steps import JointMove, Program, Wait
 from pendant.safety.robot_limits import SpeedLimits
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Law, Mode
+from pendant.tick.motion_status import MotionStatus
 from pendant.tick.pose import Pose
 from pendant.tooling.arm_shape import ArmShape
 from pendant.tooling.turn_watch import JOLTED, SLOW_ELBOW, SLOW_JOINT, SLOW_TOOL, STRUCK
@@ -56,13 +57,17 @@ class Cell:
     def step(self, inputs: Inputs = NOTHING) -> Decision:
         self.tick += 1
         value = placed(self.shape, self.q, mass=MASS, centre=CENTRE, offset=(1.0, -2.0, 1.5))
-        value.tick, value.move_done = self.tick, self.done
+        value.tick = self.tick
         value.F_user[:3] += self.push
         value.w_sensor[:3] -= value.R_BF.T @ self.push
         value.qd[:] = 0.1 if self.goal is not None else 0.0
+        status = MotionStatus(self.done)
         for name, change in self.changes.items():
-            setattr(value, name, change)
-        self.last = self.supervisor.step(value, inputs)
+            if name == "refused":
+                status = status._replace(refused=str(change))
+            else:
+                setattr(value, name, change)
+        self.last = self.supervisor.step(value, inputs, status)
         self.events += whole(self.last.events, self.tick)
         move = self.last.move
         if self.last.law is Law.FOLLOW and isinstance(move, JointMove) and move.id != self.done:
@@ -178,7 +183,7 @@ def test_it_is_slow_and_slower_in_reduced() -> None:
         (Inputs(jog=JogMove(frame="joint", axis=0, sign=1)), {}, "the arm is jogged"),
         (NOTHING, {"joints_valid": False}, "check joint encoders and motor currents"),
         (NOTHING, {"wrench_valid": False}, "the flange force sensor is not valid"),
-        (NOTHING, {"move_refused": "beyond its range"}, "beyond its range"),
+        (NOTHING, {"refused": "beyond its range"}, "beyond its range"),
         (NOTHING, {"v_tcp": SLOW_TOOL + 0.01}, "faster than the wizard may move the arm"),
         (NOTHING, {"v_elbow": SLOW_ELBOW + 0.01}, "faster than the wizard may move the arm"),
         (NOTHING, {"qd": np.full(6, -SLOW_JOINT - 0.01)}, "faster than the wizard may move the arm"),

@@ -7,10 +7,10 @@ import pytest
 
 from pendant.all_settings import Settings, apply, safety_checksum
 from pendant.contact.contact_change import Contact
-from pendant.decision import Decision
+from pendant.decision import Decision, EstimatorCommand
 from pendant.events.event import Event, Kind
 from pendant.freedrive.periods import Remaining
-from pendant.guided.bias_follower import SURE
+from pendant.guided.bias_follower import SURE, Slack
 from pendant.haptics import Pattern, Shake
 from pendant.limits.axis_locks import axis_locks, locks_of
 from pendant.motion.script_requests import Guided
@@ -22,7 +22,7 @@ from pendant.safety.robot_limits import JointRange, SpeedLimits
 from pendant.sensor.taring import Taring
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.tick.pose import from_rpy
-from pendant.tooling.tool_in_use import Tooling
+from pendant.tooling.tool_in_use import Fitting, Tooling
 from pendant.walls.containment import Containment
 
 SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False, "program.speed": 0.4})
@@ -32,6 +32,7 @@ SHAKE = Shake(Pattern.ENTERED, 0.001, 0.2, 3.0)
 PERIODS = (Remaining("free-drive", 3, 7),)
 MOVE = Wait(duration=1.0, id=4)
 EVENT = Event(Kind.RESET, 5)
+SLACK = Slack(1.5, 0.1)
 CONTACT = cast("Contact", "contact")
 AXES = (True, False, True, False, False, True)
 TURNED = from_rpy(0.1, 0.2, 0.3)
@@ -44,7 +45,7 @@ class Parts:
     def __init__(self, settings: Settings = SETTINGS, /, **changes: object) -> None:
         self.free = SimpleNamespace(
             phase=Phase.HELD, pull="pull",
-            arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful", slack="slack", taken="taken"),
+            arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful", slack=SLACK, taken="taken"),
             helping=True, balance="balance",
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
             periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
@@ -84,27 +85,37 @@ class Parts:
             Law.FREE, list(events), contacts=contacts, looks=looks, speeds=SPEEDS, joint_range=RANGE, shake=SHAKE
         )
 
+    def ordered(self, unsure: float = 0.5, *, looks: bool = False) -> EstimatorCommand:
+        """To the estimator, in free-drive."""
+        use, bias = self.settings, self.free.baseline
+        fitting, zero = cast("Fitting", "fitting"), (0.1,) * 6
+        return EstimatorCommand(fitting, zero, bias, unsure, False, looks, use.joint_control, use.contact)
+
     def expected(self, **changes: object) -> dict[str, object]:
         """Of a tick of held free-drive."""
         return {
             "mode": Mode.FREE_DRIVE, "safety": Safety.REDUCED, "phase": Phase.HELD, "law": Law.FREE, "move": MOVE, "gain": 2.5,
             "flange_help": True,
             "force_cap": 70.0, "baseline": self.free.baseline, "periods": PERIODS, "events": (), "program": ProgramState.PAUSED,
-            "step": 3, "monitored": (), "contacts": (), "looks": False, "tool_on": True, "outputs": frozenset({3}),
+            "step": 3, "monitored": (), "contacts": (), "tool_on": True, "outputs": frozenset({3}),
             "walls": ("wall",), "grip": "in the middle",
             "workspace": ("workspace", self.settings.walls), "speed_limits": SPEEDS, "joint_range": RANGE,
             "damping": "damping", "zones": (0.5, 0.6), "balance": None,
-            "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
-            "wizard": "progress", "zero": (0.1,) * 6, "reading_zero": (0.3,) * 6, "zero_due": False,
-            "slack": "slack", "doubtful": "doubtful",
+            "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE,
+            "wizard": "progress", "reading_zero": (0.3,) * 6, "zero_due": False,
+            "slack": SLACK, "doubtful": "doubtful",
             "limits": safety_checksum(self.settings), "speed": 0.4, "static": False,
             "force": "force", "offset": "offset", "script_done": 7, "signs": 0, "pull": "pull", "taken": "taken",
+            "estimator": self.ordered(),
         } | changes  # fmt: skip
 
 
 def told(decision: Decision) -> dict[str, object]:
     return {name: getattr(decision, name) for name in decision.__struct_fields__}
 
+
+UNKNOWN = {"estimator": Parts().ordered(0.0)}
+"""The free arm has told no slack."""
 
 TRYING = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "arm": None}
 TRIED = {
@@ -116,6 +127,7 @@ TRIED = {
     "doubtful": False,
     "locks": None,
     "taken": None,
+    **UNKNOWN,
 }
 
 
@@ -126,7 +138,7 @@ TRIED = {
         ({"helping": False}, {"gain": 0.0, "flange_help": False}),
         ({"state": ProgramState.RUNNING}, {"program": ProgramState.RUNNING}),
         ({"state": ProgramState.STOPPED}, {"program": ProgramState.STOPPED, "step": 0}),
-        ({"arm": None}, {"damping": None, "singularity": None, "slack": SURE, "doubtful": False, "taken": None}),
+        ({"arm": None}, {**UNKNOWN, "damping": None, "singularity": None, "slack": SURE, "doubtful": False, "taken": None}),
         ({"idle": True}, {"periods": ()}),
         ({"mode": Mode.RUN}, {"mode": Mode.RUN, "locks": None}),
         ({"guided": Guided()}, {}),
@@ -143,7 +155,9 @@ def test_it_tells_what_is_and_where_it_applies(changes: dict[str, object], diffe
     assert told(parts.step()) == parts.expected(**differs)
     again = parts.step(EVENT, contacts=(CONTACT,))
     assert again == first
-    assert told(parts.step(looks=True)) == parts.expected(**differs, looks=True)
+    assert told(parts.step(looks=True)) == parts.expected(**differs) | {
+        "estimator": parts.ordered(first.estimator.unsure, looks=True)
+    }
 
 
 @pytest.mark.parametrize("amplified", [True, False])
@@ -167,7 +181,7 @@ def test_without_the_switch_no_periods_are_told() -> None:
 
 LASTING = {
     "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
-    "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other", slack="other", taken="other"),
+    "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other", slack=Slack(3.0, 0.3), taken="other"),
     "zones": (), "move": None,
     "state": ProgramState.RUNNING,
     "index": 3, "tool_on": False, "outputs": frozenset(), "static": True, "fitting": "other",
@@ -230,3 +244,11 @@ def test_what_is_to_be_heard_is_counted(tone: bool, audible: bool) -> None:
     assert parts.step().signs == tone
     assert parts.step(EVENT, contacts=(CONTACT, CONTACT)).signs == tone + 2 * audible
     assert parts.step(tells, tells, contacts=(CONTACT,)).signs == 3 * tone + 3 * audible
+
+
+@pytest.mark.parametrize("law", [law for law in Law if law is not Law.FREE])
+def test_outside_free_drive_the_estimator_is_told_no_bias_and_whether_motion_is_planned(law: Law) -> None:
+    parts = Parts()
+    decision = parts.publisher.step(law, [], contacts=(), looks=True, speeds=SPEEDS, joint_range=RANGE, shake=SHAKE)
+    command = decision.estimator
+    assert (command.bias, command.unsure, command.planned) == (None, 0.0, law is Law.FOLLOW)

@@ -12,6 +12,7 @@ from pendant.program.steps import JointMove, Program, ProgramState, Wait
 from pendant.settings.schema import SettingRow, Value
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tick.motion_status import MotionStatus
 from pendant.walls.definitions import Start, Wall
 from pendant.walls.shapes import Sphere
 from tests.items import each_of
@@ -137,8 +138,8 @@ def test_a_program_runs_to_its_end_and_returns_to_where_it_was_started() -> None
     for number in (1, 2):
         assert isinstance(bench.last.move, JointMove)
         assert (bench.last.move.id, bench.last.step) == (number, number)
-        bench.run(5, NOTHING, estimate(move_done=number - 1))
-        bench.step(NOTHING, estimate(move_done=number))
+        bench.run(5, status=MotionStatus(number - 1))
+        bench.step(status=MotionStatus(number))
     assert (bench.last.mode, bench.last.law, bench.last.move, bench.last.step) == (Mode.NORMAL, Law.HOLD, None, 0)
     assert bench.last.events == (Event(Kind.PROGRAM_FINISHED, bench.tick, {"name": "two moves"}),)
 
@@ -167,8 +168,8 @@ def test_a_motion_that_is_paused_or_stopped_is_braked_until_static() -> None:
 
 def test_a_move_that_is_not_possible_ends_the_program_and_says_why() -> None:
     bench = running()
-    bench.step(NOTHING, estimate(move_done=1))
-    bench.step(NOTHING, estimate(qd=0.2, move_refused="beyond the reach"))
+    bench.step(status=MotionStatus(1))
+    bench.step(NOTHING, estimate(qd=0.2), MotionStatus(1, "beyond the reach"))
     assert (bench.last.mode, bench.last.law, bench.last.program) == (Mode.TEACH, Law.BRAKE, ProgramState.STOPPED)
     values = {"name": "two moves", "step": 2, "reason": "beyond the reach"}
     assert bench.last.events == (Event(Kind.PROGRAM_FAILED, bench.tick, values),)

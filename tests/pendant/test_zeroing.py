@@ -17,6 +17,7 @@ from pendant.sensor.taring import WINDOWS
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, Safety
+from pendant.tick.motion_status import MotionStatus
 from pendant.tick.pose import Wrench
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO
@@ -49,28 +50,28 @@ class Robot:
         self.run(READY)
 
     def value(self) -> Estimate:
-        value = estimate(self.tick, qd=self.qd, wrench_valid=self.valid, move_done=self.done)
+        value = estimate(self.tick, qd=self.qd, wrench_valid=self.valid)
         value.F_user = self.offset + np.array(self.supervisor.zero) if self.valid else np.zeros(6)
         return value
 
     def run(self, ticks: int, inputs: Inputs = NOTHING) -> "Robot":
         for _ in range(ticks):
             self.tick += 1
-            self.decision = self.supervisor.step(self.value(), inputs)
+            self.decision = self.supervisor.step(self.value(), inputs, MotionStatus(self.done))
             self.events += whole(self.decision.events, self.tick)
         return self
 
     def zero(self) -> str:
         """Why not, or "" where it was done."""
-        before = self.decision.zero
+        before = self.decision.estimator.zero
         self.events.clear()
         self.run(1, ZERO)
         (told,) = [event for event in self.events if event.kind in (Kind.SENSOR_ZEROED, Kind.ZERO_REFUSED)]
         if told.kind is Kind.SENSOR_ZEROED:
-            assert self.decision.zero == pytest.approx([-each for each in OFFSET])
+            assert self.decision.estimator.zero == pytest.approx([-each for each in OFFSET])
             assert self.run(1).value().F_user == pytest.approx(np.zeros(6))
             return ""
-        assert self.decision.zero is before
+        assert self.decision.estimator.zero is before
         return str(told.values["reason"])
 
     def kinds(self) -> list[Kind]:
@@ -244,7 +245,7 @@ def run_program(*steps: Wait | ZeroSensor | JointMove | ApplyForce | SwitchTool)
 def test_a_step_zeroes_the_sensor_at_once_where_the_arm_has_stood() -> None:
     robot = run_program(ZeroSensor(), SwitchTool(on=True))
     assert robot.kinds() == [Kind.PROGRAM_STARTED, Kind.SENSOR_ZEROED]
-    assert robot.decision.zero == pytest.approx([-each for each in OFFSET])
+    assert robot.decision.estimator.zero == pytest.approx([-each for each in OFFSET])
     robot.run(1)
     assert robot.kinds()[2:] == [Kind.TOOL_SWITCHED, Kind.PROGRAM_FINISHED]
 
@@ -378,12 +379,12 @@ READING = command(Command.ZERO_READING)
 @pytest.mark.parametrize("name", MODES)
 def test_the_reading_is_zeroed_at_once_in_every_state_and_free_drive_does_not_go_by_it(name: str) -> None:
     robot = MODES[name][0]()
-    before = robot.decision.zero
+    before = robot.decision.estimator.zero
     robot.events.clear()
     robot.run(1, READING)
     assert Kind.READING_ZEROED in robot.kinds()
     assert robot.decision.reading_zero == pytest.approx(OFFSET)
-    assert robot.decision.zero is before
+    assert robot.decision.estimator.zero is before
 
 
 def test_while_a_hand_pulls_the_reading_is_zeroed_and_the_hand_is_told() -> None:

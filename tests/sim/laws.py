@@ -6,7 +6,7 @@ import numpy as np
 
 from pendant.decision import Decision
 from pendant.program.steps import Move
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, WhoseForce
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body, chain
@@ -53,14 +53,12 @@ def estimate(**values: Any) -> Estimate:
         "v_F": np.zeros(6),
         "v_tcp": 0.0,
         "v_elbow": 0.0,
-        "move_done": 0,
         "friction": np.zeros(N),
         "friction_deviation": np.zeros(N),
         "tau_ways": np.zeros((3, N)),
-        "tau_hand": np.zeros(N),
-        "tau_certain": np.zeros(N),
     }
-    return Estimate(**{**known, **values})
+    hand = {name: values.pop(name, np.zeros(N)) for name in ("tau_hand", "tau_certain")}
+    return Estimate(**{**known, **values}, whose=WhoseForce(**hand))
 
 
 def decision(

@@ -42,8 +42,9 @@ class MeasuredFields:
             self._torque = np.array(motors.gear) * np.array(motors.torque_constant)
             self._rotor, self._most_current = np.array(motors.rotor_inertia), np.array(motors.current)
             self._record.put("target_gravity", simulation.estimate.g_B)
-        if decision.fitting is not None and decision.fitting is not self._fitting:
-            self._fit(decision.fitting)
+        fitting = decision.estimator.fitting
+        if fitting is not None and fitting is not self._fitting:
+            self._fit(fitting)
         estimate, put = simulation.estimate, self._record.put
         self._fill_joints(simulation, estimate, decision)
         R_BT = estimate.R_BF @ self._R_FT

@@ -181,7 +181,7 @@ class WorkCell:
             self._change(cell, prepared)
 
     def _now(self) -> CellNow:
-        loop, fitting = self._loop, self._loop.latest().decision.fitting
+        loop, fitting = self._loop, self._loop.latest().decision.estimator.fitting
         scenario = loop.scenario
         return CellNow(
             arm=self._arm,

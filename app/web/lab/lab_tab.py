@@ -77,7 +77,7 @@ class Lab:
         if self._loop.scenario is not self._shown:
             self._shown = self._loop.scenario
             self._back(snapshot)
-        fitting = decision.fitting
+        fitting = decision.estimator.fitting
         if fitting is not None and fitting.number != self._number and fitting.share == 1.0:
             self._number = fitting.number
             self._tell(self.configured, min(fitting.mass, self._arm.payload))

@@ -63,7 +63,7 @@ class LabSetup:
 
     def chosen(self) -> Scenario:
         """The scenario that the controls ask for. What no control changes stays as in the running scenario."""
-        now, fitting = self._loop.scenario, self._loop.latest().decision.fitting
+        now, fitting = self._loop.scenario, self._loop.latest().decision.estimator.fitting
         mounting = now.mounting if self.mounting.value == AS_IS else MOUNTINGS[self.mounting.value]
         tilt = math.radians(float(self.tilt.value))
         world = now.world

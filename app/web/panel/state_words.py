@@ -2,10 +2,10 @@
 
 from app.web.widgets.svg import Colour
 from pendant.events.event_row import Severity
-from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import PullCauses
 from pendant.tick.modes import Mode, Phase, Safety
 from pendant.tick.pose import norm
+from sim.exchange.told_force import UncertainForce
 
 WORDS = {
     Mode.NORMAL: ("Holding still", Colour.GREEN),

@@ -159,7 +159,7 @@ class Scene:
 
     def _show_believed(self, snapshot: Snapshot) -> bool:
         """Beside the true payload that which the controller believes in, where they differ."""
-        fitting, mass = snapshot.decision.fitting, snapshot.configured_mass
+        fitting, mass = snapshot.decision.estimator.fitting, snapshot.configured_mass
         differs = abs(mass - snapshot.truth_payload_mass) >= BELIEVED_APART
         visible = fitting is not None and differs
         changed = self._believed.visible != visible

@@ -78,19 +78,19 @@ class ToolsTab:
         """Show tool, payload and wizard; True if anything changed."""
         decision = snapshot.decision
         locked = decision.mode in (Mode.FREE_DRIVE, Mode.RUN) or decision.phase is Phase.SEQUENCE
-        wizard = decision.wizard
+        wizard, fitting = decision.wizard, decision.estimator.fitting
         if self._loop.tools != self._table:
             self._tabulate(self._loop.tools)
-        if decision.fitting is not None and (self._fitting is None or decision.fitting.number != self._fitting.number):
-            self._take(decision.fitting)
-        self._fitting = decision.fitting
+        if fitting is not None and (self._fitting is None or fitting.number != self._fitting.number):
+            self._take(fitting)
+        self._fitting = fitting
         measuring, turning = wizard.share > 0.0, wizard.doing != ""
         idle = decision.phase is Phase.OFF and not measuring and not turning
         changed = [
-            self.now.show(svg.facts(_facts(decision.fitting, locked))),
+            self.now.show(svg.facts(_facts(fitting, locked))),
             self.about.show(self._about()),
             self.progress.show(_told(wizard, measuring)),
-            self.editor.show(self._chosen(), locked, "" if decision.fitting is None else decision.fitting.tool.name),
+            self.editor.show(self._chosen(), locked, "" if fitting is None else fitting.tool.name),
             self.touching.show(locked),
             self._show_frame(snapshot, locked or turning),
             enable(self.use, not locked and not turning),
@@ -213,7 +213,7 @@ def _told(wizard: Progress, measuring: bool) -> str:
 
 def _subtracted(decision: Decision) -> str:
     """What is subtracted from the force sensor, and whether to zero it, in a line."""
-    force, torque = math.hypot(*decision.zero[:3]), math.hypot(*decision.zero[3:])
+    force, torque = math.hypot(*decision.estimator.zero[:3]), math.hypot(*decision.estimator.zero[3:])
     now = f"{force:.1f} N and {torque:.2f} N·m are subtracted."
     if decision.zero_due:
         return svg.note("Zero the force sensor now", f"{now} Nothing may touch the arm.", Colour.AMBER)

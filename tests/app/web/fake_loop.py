@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from app.files.library import load_arm
 from app.robot_interface.controller.callers import at_once
 from pendant.all_settings import Settings
-from pendant.decision import Decision
+from pendant.decision import Decision, EstimatorCommand
 from pendant.equipment.tools import Tool
 from pendant.events.event import Event, Kind, Values
 from pendant.freedrive.periods import Remaining
-from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import PullCauses
 from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness
@@ -31,6 +30,7 @@ from sim.arm.frames import joint_frames, quaternion_from_matrix
 from sim.arm.scenario import Load, Scenario, table
 from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
+from sim.exchange.told_force import UncertainForce
 from sim.run.between_ticks import BetweenTicks
 from sim.run.event_log import EventLog
 from sim.run.troubles import Troubles
@@ -172,9 +172,8 @@ class FakeLoop:
             self.periods,
             (),
             monitored=self.monitored,
-            fitting=self.fitting,
+            estimator=EstimatorCommand(self.fitting, self.zero),
             wizard=self.wizard,
-            zero=self.zero,
             zero_due=self.zero_due,
             locks=self.locks,
             singularity=self.singularity,

@@ -10,7 +10,7 @@ from pendant.freedrive.periods import Periods, Remaining
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.validity import Stillness, WrenchMean
 from pendant.signals.sources import BUTTON, NONE
-from pendant.tick.estimate import Estimate, JointsFeel
+from pendant.tick.estimate import Estimate, JointsFeel, WhoseForce
 from pendant.tick.limit_engine import Excess
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import ORIGIN, Vector
@@ -213,7 +213,7 @@ def test_an_arm_that_creeps_as_its_payload_has_fallen_rests(ticks: int, phase: P
     """Without the flange sensor a fall may be known too late to stop for it, and friction does not quite hold the arm."""
     alone = Alone(False, static__time=0.3)
     led, falls = estimate(qd=0.02), estimate(qd=0.02)
-    led.joints_feel, falls.joints_feel = JointsFeel.HAND, JointsFeel.FALL
+    led.whose, falls.whose = WhoseForce(joints_feel=JointsFeel.HAND), WhoseForce(joints_feel=JointsFeel.FALL)
     alone.periods.register()
     for value, count in ((led, 200), (falls, 149), (led, 1)):
         alone.run(count, value)

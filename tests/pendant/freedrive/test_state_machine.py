@@ -13,6 +13,7 @@ from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tick.motion_status import NO_MOTION, MotionStatus
 from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
@@ -35,17 +36,19 @@ class Bench:
         self.last: Decision
         self.events: list[Event] = []
 
-    def step(self, inputs: Inputs = NOTHING, value: Estimate | None = None) -> Decision:
+    def step(self, inputs: Inputs = NOTHING, value: Estimate | None = None, status: MotionStatus = NO_MOTION) -> Decision:
         self.tick += 1
         value = value or estimate()
         value.tick = self.tick
-        self.last = self.supervisor.step(value, inputs)
+        self.last = self.supervisor.step(value, inputs, status)
         self.events += whole(self.last.events, self.tick)
         return self.last
 
-    def run(self, count: int, inputs: Inputs = NOTHING, value: Estimate | None = None) -> Decision:
+    def run(
+        self, count: int, inputs: Inputs = NOTHING, value: Estimate | None = None, status: MotionStatus = NO_MOTION
+    ) -> Decision:
         for _ in range(count):
-            self.step(inputs, value)
+            self.step(inputs, value, status)
         return self.last
 
     def entered(self, value: Estimate | None = None) -> "Bench":

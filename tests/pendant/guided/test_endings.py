@@ -10,11 +10,10 @@ from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.guided.bias_follower import SURE
 from pendant.guided.endings import Ending, EndingWatch, _torque, way_back
+from pendant.guided.unintended_motion import LEFT
 from pendant.guided.user_force import SWING, UserForce
-from pendant.guided.work import LEFT
 from pendant.inputs import NOTHING, Button, Inputs
-from pendant.sensor.hand_model import LIGHT, TOUCH
-from pendant.sensor.odds import HALF, KNOWN, SUSPECTED, TOUCHES
+from pendant.sensor.hand_model import HALF, KNOWN, LIGHT, SUSPECTED, TOUCH, TOUCHES
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Mode
@@ -213,7 +212,7 @@ def test_motion_can_be_switched_off() -> None:
 def lost(odds: float, share: float = 1.0) -> Estimate:
     """A payload of which so much may be gone."""
     value = loaded()
-    value.lost_odds, value.lost_share = odds, share
+    value.whose = value.whose._replace(lost_odds=odds, lost_share=share)
     return value
 
 
@@ -250,7 +249,7 @@ def test_each_switch_stands_for_its_own_odds(payload: bool, sensor: bool) -> Non
     assert free.see(lost(SUSPECTED)) is None
     assert free.operation.suspect is payload
     stepped = loaded()
-    stepped.step_odds = SUSPECTED
+    stepped.whose = stepped.whose._replace(step_odds=SUSPECTED)
     assert free.see(stepped) is None
     assert free.operation.suspect is sensor
     free.see(stepped, use_wrench=False)
@@ -355,7 +354,7 @@ def test_the_hands_torque_is_its_change_in_every_axis() -> None:
 def fallen() -> Estimate:
     """The joints tell that the payload fell."""
     value = loaded()
-    value.payload_fell = True
+    value.whose = value.whose._replace(payload_fell=True)
     return value
 
 

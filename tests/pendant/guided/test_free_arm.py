@@ -16,9 +16,10 @@ from pendant.guided.user_force import UserForce
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import Nearness
 from pendant.limits.validity import JOINTS_SENSED, Stillness, WrenchMean
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY, Estimate, JointsFeel
 from pendant.tick.modes import TICK, Mode
+from pendant.tick.motion_status import NO_MOTION, MotionStatus
 from pendant.tick.pose import ORIGIN
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder, Area
@@ -53,14 +54,16 @@ class Free:
             rated=RATED,
         )
 
-    def around(self, value: Estimate, shaken: bool = False) -> Surroundings:
+    def around(self, value: Estimate, shaken: bool = False, status: MotionStatus = NO_MOTION) -> Surroundings:
         value.tick = self.tick
         ok = self.mean.step(value)
-        return Surroundings(value, Mode.FREE_DRIVE, ok, Stillness(), self.mean, shaken=shaken, payload=self.payload)
+        return Surroundings(
+            value, Mode.FREE_DRIVE, ok, Stillness(), self.mean, shaken=shaken, payload=self.payload, status=status
+        )
 
-    def see(self, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
+    def see(self, value: Estimate, waits: bool = False, shaken: bool = False, status: MotionStatus = NO_MOTION) -> list[Event]:
         self.tick += 1
-        return whole_transition(self.arm.step(self.around(value, shaken), self.settings, waits), self.tick)
+        return whole_transition(self.arm.step(self.around(value, shaken, status), self.settings, waits), self.tick)
 
     def during(self, ticks: int, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
         return [event for _ in range(ticks) for event in self.see(value, waits, shaken)]
@@ -117,7 +120,7 @@ def test_a_sensor_that_steps_ends_free_drive_while_it_is_used_and_watched(watche
     free = Free(sensor=sensor, unexplained__sensor=watched)
     free.during(2, estimate())
     value = estimate(force=[0.0, 0.0, 20.0])
-    value.step_odds, value.step_force = KNOWN, 20.0
+    value.whose = value.whose._replace(step_odds=KNOWN, step_force=20.0)
     told = [Event(Kind.SENSOR_STEPPED, 3, {"force": 20.0})]
     assert free.see(value) == (told if watched and sensor else [])
 
@@ -163,10 +166,8 @@ def test_the_way_to_a_singularity_is_told_where_a_lock_may_have_to_give_way(lock
     for tick, (value, word, new) in enumerate(
         [(0.05, ok, False), (0.03, near, True), (0.03, near, False), (0.005, too_near, True)], 1
     ):
-        now = estimate()
-        now.singularity = value
         event = Event(Kind.SINGULARITY, tick, {"status": word, "value": value, "limit": 0.04})
-        assert free.see(now) == ([event] if locked and new else [])
+        assert free.see(estimate(), status=MotionStatus(singularity=value)) == ([event] if locked and new else [])
         assert free.arm.singularity is word
 
 
@@ -222,7 +223,7 @@ def test_while_the_sensor_may_have_stepped_nothing_helps(watched: bool, sensor: 
     """FD-19: and once it may not, the help is back."""
     free, value = Free(sensor=sensor, unexplained__sensor=watched), estimate()
     for odds, suspected in ((-SUSPECTED - 1e-9, False), (-SUSPECTED, True), (-math.inf, False)):
-        value.step_odds = odds
+        value.whose = value.whose._replace(step_odds=odds)
         free.see(value)
         assert free.arm.suspect is (suspected and watched and sensor)
 
@@ -231,10 +232,10 @@ def test_while_the_sensor_may_have_stepped_nothing_helps(watched: bool, sensor: 
 def test_a_payload_that_drops_is_told_by_its_odds(sensor: bool) -> None:
     """FD-19: of a sensor that is used."""
     free, value = Free(sensor=sensor, payload=2.0), estimate(needed=TWO, load_mass=2.0)
-    value.lost_odds, value.lost_share = SUSPECTED, 0.9
+    value.whose = value.whose._replace(lost_odds=SUSPECTED, lost_share=0.9)
     assert free.see(value) == []
     assert free.arm.suspect is sensor
-    value.lost_odds = KNOWN
+    value.whose = value.whose._replace(lost_odds=KNOWN)
     mass, weight = pytest.approx(-1.8), pytest.approx(0.9 * TWO[2])
     assert free.see(value) == ([Event(Kind.STOPPED_PAYLOAD, 2, {"mass": mass, "force": weight})] if sensor else [])
 
@@ -245,7 +246,7 @@ def test_what_pulls_is_told_with_the_odds_of_a_sensor_that_is_used(sensor: bool)
     free, value = Free(sensor=sensor, payload=2.0), estimate(needed=TWO, load_mass=2.0)
     free.see(value)
     assert free.arm.pull == PullCauses(HandFelt.NOBODY)
-    value.lost_odds, value.lost_share, value.step_odds = KNOWN, 0.9, -3.0
+    value.whose = value.whose._replace(lost_odds=KNOWN, lost_share=0.9, step_odds=-3.0)
     free.see(value)
     assert free.arm.pull == (PullCauses(HandFelt.NOBODY, KNOWN, 0.9, -3.0) if sensor else PullCauses(HandFelt.NOBODY))
 
@@ -254,7 +255,7 @@ def test_what_pulls_is_told_with_the_odds_of_a_sensor_that_is_used(sensor: bool)
 def test_without_the_sensor_a_hand_is_told_where_only_a_hand_explains_what_the_joints_feel(feels: JointsFeel) -> None:
     """FD-19: whatever force that makes."""
     free, value = Free(sensor=False), estimate(felt=40.0)
-    value.joints_feel = feels
+    value.whose = value.whose._replace(joints_feel=feels)
     free.during(50, value)
     assert free.arm.pull == PullCauses(HandFelt.FLANGE if feels is JointsFeel.HAND else HandFelt.NOBODY)
 

@@ -12,8 +12,7 @@ from pendant.guided.user_force import UserForce
 from pendant.inputs import NOTHING
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WrenchMean
-from pendant.sensor.hand_model import SLOWEST, STEADY, TREMOR
-from pendant.sensor.odds import HALF, KNOWN
+from pendant.sensor.hand_model import HALF, KNOWN, SLOWEST, STEADY, TREMOR
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, window_noise
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK, Mode, Phase
@@ -161,7 +160,7 @@ def test_where_the_arm_is_guided_nothing_is_taken_off() -> None:
 def stepped(odds: float, force: float) -> Estimate:
     """The sensor feels so much more, and has stepped with these odds."""
     value = estimate(force=[0.0, 0.0, force])
-    value.step_odds, value.step_force = odds, force
+    value.whose = value.whose._replace(step_odds=odds, step_force=force)
     return value
 
 

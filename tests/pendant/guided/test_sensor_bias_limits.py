@@ -7,7 +7,7 @@ from pendant.guided.bias_follower import BiasFollower
 from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.limits.validity import WINDOW, WrenchMean
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, window_noise
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate

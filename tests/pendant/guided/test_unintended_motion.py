@@ -8,12 +8,10 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.bias_follower import Slack
-from pendant.guided.unintended_motion import UnintendedMotion
+from pendant.guided.unintended_motion import LEFT, UnintendedMotion
 from pendant.guided.user_force import UserForce
-from pendant.guided.work import LEFT
 from pendant.limits.parameters import reference
-from pendant.sensor.hand_model import LASTS, LIGHT
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF, LASTS, LIGHT
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.state import state_of
@@ -58,14 +56,14 @@ class Bench:
     def held(self, value: Estimate) -> None:
         """A hand at the flange for one tick, which the force, or what the joints feel, tells as it is."""
         self.hand.user = (0.0, 0.0, 40.0) if self.sensor else (0.0, 0.0, 0.0)
-        value.joints_feel = JointsFeel.NOTHING if self.sensor else JointsFeel.HAND
+        value.whose = value.whose._replace(joints_feel=JointsFeel.NOTHING if self.sensor else JointsFeel.HAND)
         assert self.alone.step(value, self.hand, use_wrench=self.sensor, driven=False) is None
         self.hand.user = (0.0, 0.0, 0.0)
 
     def let_go(self, value: Estimate) -> None:
         """A hand, and then so long a wall that who was felt is not believed to be there any more."""
         self.held(value)
-        value.joints_feel = JointsFeel.NOTHING
+        value.whose = value.whose._replace(joints_feel=JointsFeel.NOTHING)
         for _ in range(LASTS):
             assert self.see(value, driven=True) is None
         self.ticks = 0
@@ -240,7 +238,7 @@ def test_beside_a_sensor_that_is_not_used_no_work_excuses_a_motion() -> None:
 def unseen(feels: JointsFeel, way: float = 0.0, speed: float = 0.1, felt: float = 9.0) -> Estimate:
     """What an arm without a flange sensor tells; the torques of a hand would pay for its motion."""
     value = at(way, speed, turns=1.0, felt=felt if feels is JointsFeel.HAND else 0.0)
-    value.joints_feel = feels
+    value.whose = value.whose._replace(joints_feel=feels)
     return value
 
 

@@ -8,8 +8,7 @@ from pendant.guided.bias_follower import Slack
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import reference
-from pendant.sensor.hand_model import LIGHT
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF, LIGHT
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from pendant.guided.user_force import JOINTS_SWING, SWING, UserForce
-from pendant.sensor.hand_model import KEEPS, STEADY
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF, KEEPS, STEADY
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector
@@ -69,7 +68,7 @@ def test_while_the_arm_is_led_that_takes_longer() -> None:
 def by_joints(felt: list[float], feel: JointsFeel = JointsFeel.HAND) -> Estimate:
     """The joints feel this force at the flange, and take it for this; a sensor that is not used feels 50 N."""
     value = estimate(felt=felt, force=50.0)
-    value.joints_feel = feel
+    value.whose = value.whose._replace(joints_feel=feel)
     return value
 
 
@@ -149,13 +148,13 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
         slow_joints += settle * (joints_feel @ up - slow_joints)
         by_joints += share(JOINTS_SWING) * (joints_feel - slow_joints * up - by_joints)
         feels = tick % 2 == 0
-        now.joints_feel = JointsFeel.HAND if feels else JointsFeel.NOTHING
-        now.F_link = joints_feel if feels else np.zeros(3)
+        now.whose = now.whose._replace(joints_feel=JointsFeel.HAND if feels else JointsFeel.NOTHING)
+        now.whose = now.whose._replace(F_link=joints_feel if feels else np.zeros(3))
         user, gone = by_joints if feels else np.zeros(3), slow_joints
         if use_wrench:
             slow += settle * (change @ up - slow)
             by_sensor += share(SWING) * (change - slow * up - by_sensor)
-            user = by_sensor + now.F_link
+            user = by_sensor + now.whose.F_link
             gone = residual + slow
             change_seen = change
         else:

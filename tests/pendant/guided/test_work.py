@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from pendant.guided.work import LEFT, Work
-from pendant.sensor.odds import HALF
+from pendant.guided.unintended_motion import LEFT, Work
+from pendant.sensor.hand_model import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector
@@ -158,9 +158,9 @@ def test_an_arm_that_slows_down_pays_with_its_speed(share: float, lasts: bool) -
 def test_what_is_not_a_number_pays_for_nothing(wrong: str) -> None:
     value = moving(20.0)
     if wrong == "friction":
-        value.powers = (*value.powers[:2], math.nan)
+        value.whose = value.whose._replace(powers=(*value.whose.powers[:2], math.nan))
     else:
-        value.energy = math.nan
+        value.whose = value.whose._replace(energy=math.nan)
     work = done((101, value))
     assert wrong == "energy" or work.lasts(100)
     assert wrong == "energy" or not (work.settled or work.paid)

@@ -13,6 +13,7 @@ from pendant.limits.nearness import Nearness
 from pendant.limits.settings import AxisSettings, LockFrame
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Mode
+from pendant.tick.motion_status import MotionStatus
 from pendant.tick.pose import from_rpy
 from sim.arm.frames import rotation_from_rpy
 from tests.pendant.estimates import estimate
@@ -98,9 +99,7 @@ class Robot:
 
     def step(self, inputs: Inputs = NOTHING):
         self.tick += 1
-        now = estimate(self.tick)
-        now.singularity = self.near
-        return self.supervisor.step(now, inputs)
+        return self.supervisor.step(estimate(self.tick), inputs, MotionStatus(singularity=self.near))
 
 
 def test_locks_hold_in_free_drive_and_can_be_changed_in_it() -> None:

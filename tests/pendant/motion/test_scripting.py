@@ -23,6 +23,7 @@ from pendant.motion.script_requests import (
 )
 from pendant.program.steps import ProgramState, RunScript, script_program
 from pendant.tick.modes import Law, Mode
+from pendant.tick.motion_status import MotionStatus
 from pendant.tick.pose import UNTURNED
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
@@ -47,9 +48,7 @@ def running(**changes: float | bool) -> Bench:
 
 def said(bench: Bench, move: ScriptedMove | None = None, done: int = 0, **more: Any) -> None:
     """A tick in which the script says this, and the law has finished move `done`."""
-    seen = estimate()
-    seen.move_done = done
-    bench.step(Inputs(script=Scripted(move=move, **more)), seen)
+    bench.step(Inputs(script=Scripted(move=move, **more)), status=MotionStatus(done))
 
 
 PUSHING = ForceMode(

@@ -28,6 +28,7 @@ from pendant.program.steps import (
 )
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode
+from pendant.tick.motion_status import MotionStatus
 from pendant.tick.pose import UNTURNED
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
@@ -71,7 +72,7 @@ def done(bench: Bench) -> None:
     """The law has finished the move that it was given."""
     move = bench.last.move
     assert move is not None
-    bench.step(value=estimate(move_done=move.id))
+    bench.step(status=MotionStatus(move.id))
 
 
 def until(then: str) -> LinearMove:

@@ -11,6 +11,7 @@ from pendant.program.jog_move import LONGEST, Jogged, JogMove, MoveStraight, Mov
 from pendant.signals.enabling_device import Grip
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
+from pendant.tick.motion_status import MotionStatus
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
@@ -54,7 +55,7 @@ def test_another_button_takes_the_place_of_the_one_that_is_held(move: Jogged, ot
     told = [(event.kind, event.values.get("reason")) for event in bench.events]
     another = [(Kind.JOG_ENDED, "another button"), (Kind.JOG_STARTED, None)]
     assert told == ([] if move is other else another)
-    bench.step(held(other), estimate(move_refused="beyond its range"))
+    bench.step(held(other), status=MotionStatus(refused="beyond its range"))
     assert bench.events[-1].values["reason"] == "beyond its range"
     bench.events.clear()
     bench.run(20, held(other))
@@ -120,11 +121,11 @@ def test_the_move_that_is_done_has_ended_and_an_older_one_has_not() -> None:
     bench = rested()
     move = bench.step(held(HOME)).move
     assert move is not None
-    bench.step(held(HOME), estimate(move_done=move.id + 1))
+    bench.step(held(HOME), status=MotionStatus(move.id + 1))
     assert bench.last.move is move
-    (ended,) = bench.step(held(HOME), estimate(move_done=move.id)).events
+    (ended,) = bench.step(held(HOME), status=MotionStatus(move.id)).events
     assert ended.values["reason"] == "done"
-    bench.step(held(HOME), estimate(move_done=move.id))
+    bench.step(held(HOME), status=MotionStatus(move.id))
     assert bench.last.move is None
 
 

@@ -8,10 +8,11 @@ import pytest
 from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
 from pendant.program.steps import JointMove, Program
-from pendant.sensor.odds import HALF
+from pendant.sensor.hand_model import HALF
 from pendant.signals.joint_push import JointPushSignal
 from pendant.signals.settings import JointPush
 from pendant.tick.modes import Law, Mode, Phase
+from pendant.tick.motion_status import MotionStatus
 from tests.pendant.signals.test_signals import HOLD, LET_GO, Bench
 
 TICK = 0.002
@@ -113,7 +114,7 @@ def run_a_program(bench: Bench, **felt: float) -> None:
     bench.run(0.3, qd=0.2)
     bench.run(0.2, qd=0.2, **felt)
     assert bench.last.law is Law.FOLLOW
-    bench.run(0.002, move_done=1, **felt)
+    bench.run(0.002, status=MotionStatus(1), **felt)
     assert bench.kinds == [Kind.PROGRAM_LOADED, Kind.PROGRAM_STARTED, Kind.PROGRAM_FINISHED]
     bench.run(0.5, **felt)
 

@@ -11,6 +11,7 @@ from pendant.inputs import Button, Command, Inputs
 from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Mode, Phase
+from pendant.tick.motion_status import NO_MOTION, MotionStatus
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -30,12 +31,12 @@ class Bench:
         self.last: Decision
         self.run(0.5, **(untouched or {}))
 
-    def run(self, seconds: float, inputs: Inputs = NOTHING, **values: Any) -> Decision:
+    def run(self, seconds: float, inputs: Inputs = NOTHING, status: MotionStatus = NO_MOTION, **values: Any) -> Decision:
         for _ in range(round(seconds * 500)):
             self.tick += 1
             value = estimate(**values)
             value.tick = self.tick
-            self.last = self.supervisor.step(value, inputs)
+            self.last = self.supervisor.step(value, inputs, status)
             self.events += whole(self.last.events, self.tick)
             self.kinds += [event.kind for event in self.last.events]
         return self.last

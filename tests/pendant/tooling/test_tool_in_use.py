@@ -399,11 +399,11 @@ HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
 
 def test_the_decision_says_what_the_controller_is_to_believe_in() -> None:
     robot = Robot()
-    assert robot.last.fitting == Fitting(0, BARE, START, 1.0, 1.0)
+    assert robot.last.estimator.fitting == Fitting(0, BARE, START, 1.0, 1.0)
     robot.step(Inputs(tool="gripper"))
-    assert robot.last.fitting is robot.supervisor.fitting
-    assert robot.last.fitting is not None
-    assert robot.last.fitting.tool is GRIPPER
+    assert robot.last.estimator.fitting is robot.supervisor.fitting
+    assert robot.last.estimator.fitting is not None
+    assert robot.last.estimator.fitting.tool is GRIPPER
     assert robot.last.law is Law.HOLD
 
 
@@ -423,8 +423,8 @@ def test_the_table_is_told_and_the_tool_in_use_takes_effect() -> None:
     turned = msgspec.structs.replace(BARE, rpy=[0.0, 0.0, math.pi / 2.0])
     robot.step(Inputs(tools=(turned, HOOK)))
     assert robot.supervisor.tools == (turned, HOOK)
-    assert robot.last.fitting is not None
-    assert robot.last.fitting.tool is turned
+    assert robot.last.estimator.fitting is not None
+    assert robot.last.estimator.fitting.tool is turned
     R_FT = robot.supervisor.containment.R_FT
     assert pytest.approx((0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)) == R_FT
 

@@ -186,34 +186,31 @@ def test_it_is_the_same_until_walls_or_settings_change() -> None:
     assert changed.areas == (POST,)
 
 
-def stopped_at(name: str, place: list[float]) -> Estimate:
-    value = estimate(tcp=[*place, 0.0, 0.0, 0.0], elbow=[0.0] * 6)
-    value.move_refused, value.move_wall = "as told", name
-    return value
+def stopped_at(place: list[float]) -> Estimate:
+    return estimate(tcp=[*place, 0.0, 0.0, 0.0], elbow=[0.0] * 6)
 
 
 def test_the_event_of_a_stop_names_wall_part_place_and_way_back() -> None:
     containment = Containment((POST, FLOOR), {})
-    (event,) = containment.reached(stopped_at("floor", [0.2, 0.1, -0.099]), SETTINGS.walls)
+    (event,) = containment.reached(stopped_at([0.2, 0.1, -0.099]), "floor", SETTINGS.walls)
     values = {"wall": "floor", "part": "tcp", "distance": pytest.approx(-1.0), "way": "+z"}
     place = {"x": 0.0, "y": 0.0, "z": 1.0, "px": 0.2, "py": 0.1, "pz": -0.099}
     assert event == Event(Kind.MOTION_AT_WALL, 0, {**values, **place})
 
 
 def test_a_wall_that_is_gone_in_that_moment_is_not_told() -> None:
-    assert Containment((FLOOR,), {}).reached(stopped_at("post", [0.0, 0.0, 0.0]), SETTINGS.walls) == []
-    assert Containment((), {}).reached(stopped_at("floor", [0.0, 0.0, 0.0]), SETTINGS.walls) == []
+    assert Containment((FLOOR,), {}).reached(stopped_at([0.0, 0.0, 0.0]), "post", SETTINGS.walls) == []
+    assert Containment((), {}).reached(stopped_at([0.0, 0.0, 0.0]), "floor", SETTINGS.walls) == []
 
 
 def test_a_tool_that_is_turned_in_the_flange_turns_what_moves_with_it() -> None:
     ahead = Area(name="ahead", part="elbow", reference="tcp", shape=Box(size=(0.2, 0.2, 2.0)), keep_out=True)
     containment = Containment((ahead,), {})
     value = estimate(tcp=[0.0] * 6, elbow=[0.0, 0.5, 0.0, 0.0, 0.0, 0.0])
-    value.move_refused, value.move_wall = "as told", "ahead"
-    (straight,) = containment.reached(value, SETTINGS.walls)
+    (straight,) = containment.reached(value, "ahead", SETTINGS.walls)
     assert straight.values["distance"] == pytest.approx(-400.0)
     containment.R_FT = from_rpy(math.pi / 2, 0.0, 0.0)
-    (turned,) = containment.reached(value, SETTINGS.walls)
+    (turned,) = containment.reached(value, "ahead", SETTINGS.walls)
     assert turned.values["distance"] == pytest.approx(100.0)  # in the box, so far from its nearest side
 
 

@@ -8,9 +8,9 @@ import pytest
 from app.files.library import load_arm
 from pendant.all_settings import Settings
 from pendant.inputs import NOTHING
-from pendant.tick.estimate import ON_PATH, Estimate
+from pendant.tick.estimate import ON_PATH
 from sim.arm.scenario import Scenario
-from sim.collisions.arm_watch import ArmWatch
+from sim.collisions.arm_watch import ArmSeen, ArmWatch
 from sim.exchange.desk import Wishes
 from sim.paths.tool_point import ToolPoint
 from sim.simulation import Simulation
@@ -19,12 +19,11 @@ UR5E = load_arm("ur5e")
 LIMIT = np.array([0.020, 0.021, 0.022, 0.023, 0.024, 0.025])  # [rad]
 
 
-def found(wanted: np.ndarray | None, device: Simulation) -> Estimate:
-    """The estimate of a standing arm whose reference is at these angles (n,), or that has none."""
+def found(wanted: np.ndarray | None, device: Simulation) -> ArmSeen:
+    """What is watched of a standing arm whose reference is at these angles (n,), or that has none."""
     estimator, meter = device.estimator, device.controller.references.meter
     watch = ArmWatch(device.dynamics, estimator.momentum, UR5E, meter=meter, following=LIMIT)
-    watch.read(device.sensors.read(device.plant, device.current), device.estimate, wanted, free=False)
-    return device.estimate
+    return watch.read(device.sensors.read(device.plant, device.current), device.estimate, wanted, free=False)
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pendant.all_settings import apply
+from pendant.decision import EstimatorCommand
 from pendant.inputs import Inputs
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
@@ -48,7 +49,7 @@ def follow(angle, ticks: int = 400, bias=None):
     device = estimator()
     for k in range(ticks):
         q = angle(0.002 * k)
-        result = device.update(sample(q, q), 0, "", bias=bias)
+        result = device.update(sample(q, q), EstimatorCommand(bias=bias))
     return result
 
 
@@ -56,7 +57,7 @@ def test_the_kinetic_energy_in_free_drive_is_that_of_links_and_rotors() -> None:
     speed = np.array([0.1, -0.5, 1.0, -2.0, 3.0, 0.3])
     result = follow(lambda t: BENT + speed * t, bias=(0.0,) * 6)
     inertia = estimator()._dynamics.mass(result.q) + np.diag(UR5E.motors.rotor_inertia)
-    assert result.energy == pytest.approx(0.5 * speed @ inertia @ speed, rel=1e-6)
+    assert result.whose.energy == pytest.approx(0.5 * speed @ inertia @ speed, rel=1e-6)
 
 
 def test_a_steady_speed_is_followed_without_lag() -> None:
@@ -120,17 +121,17 @@ def test_invalid_joints_leave_the_last_estimate_and_do_not_count_as_motion_after
     q = np.array(BENT)
     for _ in range(100):
         q = q + 0.002 * 0.7
-        device.update(sample(q, q), 0, "")
+        device.update(sample(q, q))
     nothing = np.full(6, np.nan)
     for _ in range(50):
-        result = device.update(sample(nothing, nothing, joints=False), 0, "")
+        result = device.update(sample(nothing, nothing, joints=False))
         assert not result.joints_valid
         assert (result.q == q).all()
         assert np.allclose(result.qd, 0.7, atol=1e-6)
         assert np.isfinite(result.tau_ext).all()
     moved = q + 0.1
     for _ in range(20):
-        result = device.update(sample(moved, moved), 0, "")
+        result = device.update(sample(moved, moved))
         assert result.joints_valid
         assert (result.q == moved).all()
         assert np.abs(result.qd).max() < 1e-9
@@ -384,7 +385,7 @@ def test_gravity_is_given_in_the_axes_of_the_base(mounting: list[float], down: l
         Dynamics(rigid, rigid.links, nothing, mounting=mounting, elbow=2),
         np.zeros(3),
     )
-    result = device.update(sample(np.zeros(6), np.zeros(6)), 0, "")
+    result = device.update(sample(np.zeros(6), np.zeros(6)))
     np.testing.assert_allclose(result.g_B, down, atol=1e-12)
     assert result.copy().g_B is not result.g_B
 

@@ -444,9 +444,10 @@ def test_a_hand_leads_the_arm_by_a_link_because_the_joints_feel_it(felt: bool, m
     assert (bench.mode is Mode.FREE_DRIVE) is felt
     assert (np.linalg.norm(bench.plant.data.body("flange").xpos - before) > 0.2) == felt
     told = bench.simulation.estimate
-    assert told.tau_hand.any() == felt
-    assert told.tau_certain.any() == felt
+    assert told.whose.tau_hand.any() == felt
+    assert told.whose.tau_certain.any() == felt
     if felt:  # what is told in free-drive only
-        assert told.powers == pytest.approx([torque @ told.qd for torque in (told.tau_hand, told.tau_certain, told.friction)])
-        assert all(told.powers)
+        torques = (told.whose.tau_hand, told.whose.tau_certain, told.friction)
+        assert told.whose.powers == pytest.approx([torque @ told.qd for torque in torques])
+        assert all(told.whose.powers)
     assert [event.kind for event in bench.events if event.kind is Kind.STOPPED_MOTION] == [Kind.STOPPED_MOTION] * (not felt)

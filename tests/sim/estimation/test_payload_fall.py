@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from pendant.events.event import Kind
-from pendant.sensor.odds import RARELY
+from pendant.sensor.hand_model import RARELY
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
@@ -360,7 +360,7 @@ def test_of_a_flange_sensor_that_is_not_there_nothing_is_asked(sensor: bool) -> 
     bench.change(DropPayload())
     for _ in range(20):
         bench.run(TICK)
-        assert (bench.estimate.lost_odds, bench.estimate.step_odds) == (-math.inf, -math.inf)
+        assert (bench.estimate.whose.lost_odds, bench.estimate.whose.step_odds) == (-math.inf, -math.inf)
 
 
 def test_a_flange_sensor_that_comes_back_in_free_drive_is_not_asked_whose_torques_the_joints_feel() -> None:
@@ -370,13 +370,13 @@ def test_a_flange_sensor_that_comes_back_in_free_drive_is_not_asked_whose_torque
     bench.run(0.2, Push("flange", CENTRE, (0.0, 30.0, 0.0)))
     estimator, estimate = bench.simulation.estimator, bench.estimate
     assert estimate.wrench_valid
-    assert estimate.joints_feel is JointsFeel.HAND
-    np.testing.assert_array_equal(estimate.tau_hand, estimator.fall.torque)
-    np.testing.assert_allclose(estimate.tau_hand, estimator.momentum.residual - estimator.fall._own["before"], atol=3.0)
-    torques = (estimate.tau_hand, estimate.tau_certain, estimate.friction)
-    assert estimate.powers == pytest.approx([torque @ estimate.qd for torque in torques])
-    assert all(estimate.powers)
-    assert (estimate.F_link == 0.0).all()
+    assert estimate.whose.joints_feel is JointsFeel.HAND
+    np.testing.assert_array_equal(estimate.whose.tau_hand, estimator.fall.torque)
+    np.testing.assert_allclose(estimate.whose.tau_hand, estimator.momentum.residual - estimator.fall._own["before"], atol=3.0)
+    torques = (estimate.whose.tau_hand, estimate.whose.tau_certain, estimate.friction)
+    assert estimate.whose.powers == pytest.approx([torque @ estimate.qd for torque in torques])
+    assert all(estimate.whose.powers)
+    assert (estimate.whose.F_link == 0.0).all()
 
 
 @pytest.mark.parametrize("size", [20.0, -20.0])

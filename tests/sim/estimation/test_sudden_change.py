@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pendant.sensor.odds import SUSPECTED
+from pendant.sensor.hand_model import SUSPECTED
 from sim.estimation.momentum_observer import follow
 from sim.estimation.sudden_change import SEEN, Came, add, came, courses, forget
 

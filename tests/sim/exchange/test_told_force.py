@@ -4,13 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import apply
-from pendant.guided.force_covariance import WITHIN_95
 from pendant.inputs import NOTHING
 from pendant.tick.modes import TICK_RATE, Mode
 from sim.arm.frames import matrix_from_quaternion
 from sim.arm.scenario import Load, Scenario, ToolModel
 from sim.exchange.desk import Wishes
-from sim.exchange.told_force import told_force
+from sim.exchange.told_force import WITHIN_95, told_force
 from sim.plant.changes import SensorFault
 from sim.plant.touch import Pull
 from tests.sim.bench import LONG, Bench

@@ -8,15 +8,13 @@ import pytest
 from numpy.typing import NDArray
 
 from app.files.library import load_arm
-from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, RISE, RISES, TREMOR
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import GRIP_LEVER, KNOWN, LARGEST, RISE, RISES, SUSPECTED, TREMOR
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK
 from sim.arm.chain import Body, chain
 from sim.flange import wrench_hypotheses as bank
-from sim.flange.external_wrench import KEPT
+from sim.flange.external_wrench import KEPT, NO_ODDS, ExternalWrench
 from sim.flange.flange_forces import FlangeForces
-from sim.flange.whose_force import NOTHING, WhoseForce
 from sim.flange.wrench_hypotheses import BEFORE, FREED, LATE, LN_OFTEN, LN_RARE, LONGEST, LOST, MORE, SHORTEST, STRAY
 from sim.rigid_body.dynamics import Dynamics
 
@@ -40,8 +38,7 @@ class Arm:
     def __init__(self, seed: int = 0, payload: Body = PAYLOAD) -> None:
         rigid, self.load = chain(UR5E), TOOL + payload
         self.forces = FlangeForces(Dynamics(rigid, rigid.links, self.load, mounting=[0.0] * 3, elbow=UR5E.chain.elbow))
-        self.whose_force = WhoseForce(UR5E, self.forces)
-        self.wrench = self.whose_force.bank
+        self.wrench = ExternalWrench(UR5E, self.forces)
         self.wrench.set_load(self.load, payload)
         self.told = self.wrench.record[0]
         self.rng = np.random.default_rng(seed)
@@ -69,7 +66,7 @@ class Arm:
         own["missing"], own["specific"] = x + noise, specific + shaking / load.mass
         own["gyro"], own["turn"] = self.gyro, turn
         own["a_felt"] = felt + 0.1 * self.rng.normal(size=3)
-        self.whose = self.whose_force.update(bias, self.unsure, accelerations=accelerometer)
+        self.whose = self.wrench.update(bias, self.unsure, accelerations=accelerometer)
         self.odds.append(float(self.told["lost"]))
         self.stepped.append(float(self.told["stepped"]))
         return self.odds[-1]
@@ -201,7 +198,7 @@ def test_nothing_is_said_before_there_is_enough_to_compare() -> None:
     assert math.isfinite(arm.tick(np.zeros(6)))
     assert math.isfinite(arm.stepped[-1])
     assert (arm.tick(NEEDS, bias=None), arm.stepped[-1]) == (-math.inf, -math.inf)
-    assert arm.whose == NOTHING
+    assert arm.whose == NO_ODDS
     assert (arm.tick(NEEDS), arm.stepped[-1]) == (-math.inf, -math.inf), "it begins afresh"
 
 

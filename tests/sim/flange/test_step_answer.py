@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from app.files.library import load_arm
-from pendant.sensor.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import KNOWN, SUSPECTED
 from sim.arm.chain import Body, chain
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces

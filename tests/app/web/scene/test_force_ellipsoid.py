@@ -7,9 +7,9 @@ import pytest
 
 from app.web.scene.force_ellipsoid import BELOW, LEAST_FORCE, METRES_PER_NEWTON, THINNEST
 from app.web.server import Served, serve
-from pendant.guided.force_covariance import WITHIN_95, UncertainForce
 from sim.arm.frames import matrix_from_quaternion
 from sim.arm.scenario import Scenario
+from sim.exchange.told_force import WITHIN_95, UncertainForce
 from tests.app.web.fake_loop import ARM, FakeLoop
 
 QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # about z

@@ -5,22 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from pendant.guided.bias_follower import Slack
-from pendant.guided.force_covariance import (
-    WITHIN_95,
-    Doubts,
-    TakenForce,
-    UncertainForce,
-    covariance,
-    taken,
-    upward_in_flange,
-)
-from pendant.guided.user_force import JOINTS_SWING, SWING, UserForce
+from pendant.guided.user_force import JOINTS_SWING, SWING, Doubts, TakenForce, UserForce, upward_in_flange
 from pendant.limits.validity import WINDOW
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import GRAVITY, Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector
+from sim.exchange.told_force import WITHIN_95, UncertainForce, covariance
 from tests.pendant.estimates import MOVES, SENSOR, estimate
 
 UP = (0.0, 0.0, 1.0)
@@ -145,10 +136,10 @@ def test_so_many_of_three_gaussian_numbers_are_within() -> None:
 
 
 def test_what_the_flange_sensor_tells_comes_with_all_that_it_feels() -> None:
-    hand, slack = UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force), Slack(0.3, 0.0)
-    assert taken(hand, slack, UP, use_wrench=True) == TakenForce(ORIGIN, Doubts(ORIGIN, 0.0, 0.3, UP))
+    hand, slack = UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force), 0.3
+    assert hand.taken(slack, UP, use_wrench=True) == TakenForce(ORIGIN, Doubts(ORIGIN, 0.0, 0.3, UP))
     hand.step(estimate(force=20.0), True, MOVES)
-    force, found = taken(hand, slack, UP, use_wrench=True)
+    force, found = hand.taken(slack, UP, use_wrench=True)
     assert found is not None
     assert force == hand.user == pytest.approx((20.0 * ONCE, 0.0, 0.0))
     assert found.change == (20.0, 0.0, 0.0)
@@ -160,12 +151,12 @@ def test_what_the_flange_sensor_tells_comes_with_all_that_it_feels() -> None:
 def test_of_what_the_joints_tell_there_is_none(used: bool, at_flange: float) -> None:
     hand = UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
     value = estimate(force=[0.0, at_flange, 0.0])
-    value.F_joints = value.F_link = np.array([30.0, 0.0, 0.0])
-    value.joints_feel = JointsFeel.NOTHING if used else JointsFeel.HAND
+    value.F_joints = link = np.array([30.0, 0.0, 0.0])
+    value.whose = value.whose._replace(F_link=link, joints_feel=JointsFeel.NOTHING if used else JointsFeel.HAND)
     for _ in range(50):
         hand.step(value, used, MOVES)
     assert hand.user[0] > 15.0
-    found = taken(hand, Slack(0.0, 0.0), UP, use_wrench=used)
+    found = hand.taken(0.0, UP, use_wrench=used)
     assert found == TakenForce(hand.user, None)
     assert covariance(found, value, QUIET, KILOGRAM) is None
     assert UncertainForce(found.force, None).ellipsoid() is None
