@@ -1,4 +1,4 @@
-"""Error of the payload's mass, told apart from the flange sensor's bias by the postures in which the arm stood (FD-9, FD-11).
+"""Error of the payload's mass, separated from the flange sensor's bias by the postures in which the arm stood (FD-9, FD-11).
 
 A bias turns with the flange, and a payload pulls along gravity. In one posture the sensor measures their sum; two postures
 separate them. A Kalman filter combines all postures, in axes of F:
