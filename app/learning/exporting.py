@@ -1,4 +1,4 @@
-"""Exports a recording's demonstrations beside a running page: in a process of its own, so that the arm is not held up."""
+"""Exports a recording's demonstrations beside a running page: in a process of its own, so that the simulation is not delayed."""
 
 import subprocess
 import sys
@@ -12,8 +12,8 @@ class Exporting:
 
     Attributes:
         folder: of the last data set; None before the first.
-        told: what the last export said, when it has ended.
-        failed: it could not be done; `told` says why.
+        told: the text that the last export printed, when it has ended.
+        failed: the last export failed; `told` says why.
     """
 
     def __init__(self) -> None:
@@ -24,12 +24,12 @@ class Exporting:
 
     @property
     def on(self) -> bool:
-        """It runs."""
+        """An export runs."""
         self._look()
         return self._process is not None
 
     def start(self, recording: Path) -> None:
-        """Export into a folder beside the recording, named after it; nothing, while another export runs."""
+        """Export into a folder beside the recording, named after it; does nothing while another export runs."""
         if self.on:
             return
         self.folder, self.told, self.failed = _free(recording), "", False
@@ -44,7 +44,7 @@ class Exporting:
             self._process = None
 
     def _look(self) -> None:
-        """Take note of an export that has ended."""
+        """Read the result of an export that has ended."""
         if self._process is None or self._process.poll() is None:
             return
         said, _ = self._process.communicate()
@@ -54,7 +54,7 @@ class Exporting:
 
 
 def _free(recording: Path) -> Path:
-    """A folder that is not there yet."""
+    """A folder that does not exist yet."""
     first = recording.with_name(f"{recording.stem}-demonstrations")
     folder, number = first, 1
     while folder.exists():

@@ -1,4 +1,4 @@
-"""Statistics of a data set's columns, as LeRobot keeps them: by these a policy scales what it sees."""
+"""Statistics of a data set's columns, as in LeRobot; a policy scales its inputs by them."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ Values = dict[str, NDArray[Any]]
 
 
 def statistics(values: NDArray[Any]) -> Values:
-    """Of the columns of (k,) or (k, m): each kind (m,), and how many rows there were (1,)."""
+    """Statistics of each column of an array (k,) or (k, m): min, max, mean and others, each (m,), and the number of rows (1,)."""
     table = values.reshape(len(values), -1).astype(np.float64)
     found = {"min": table.min(axis=0), "max": table.max(axis=0), "mean": table.mean(axis=0), "std": table.std(axis=0)}
     found |= {name: np.quantile(table, share, axis=0) for name, share in QUANTILES.items()}
@@ -19,12 +19,13 @@ def statistics(values: NDArray[Any]) -> Values:
 
 
 def flat(stats: dict[str, Values]) -> dict[str, Any]:
-    """As columns of the table of demonstrations."""
+    """Statistics by the names of columns in the table of demonstrations."""
     return {f"stats/{name}/{kind}": value.tolist() for name, each in stats.items() for kind, value in each.items()}
 
 
 def joined(parts: list[Values]) -> dict[str, Any]:
-    """Statistics of all demonstrations from those of each. Quantiles are means of theirs, as in LeRobot."""
+    """Statistics of all demonstrations from those of each. The quantiles are weighted means of the demonstrations' quantiles, as
+    in LeRobot."""
     counts = np.array([float(part["count"][0]) for part in parts])
     weights = (counts / counts.sum()).reshape(-1, *[1] * parts[0]["mean"].ndim)
     stacked = {name: np.array([part[name] for part in parts]) for name in parts[0]}

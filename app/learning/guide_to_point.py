@@ -1,4 +1,4 @@
-"""The environment: an arm in free-drive is brought to a point by pushing its flange."""
+"""The environment: a hand pushes the flange of an arm in free-drive to a point."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -27,34 +27,35 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 STEP_TICKS = TICK_RATE // 20
-"""Ticks of a step, 0.05 s: the arm of a hand is softer and slower, but feels in between."""
+"""Ticks of a step, 0.05 s: a human arm is softer and slower than this hand, but also feels forces between two steps."""
 
 FORCE = 25.0
-"""Largest force of the hand along each axis [N]: what a person leads an arm with, without effort."""
+"""Largest force of the hand along each axis [N]: with so much a person leads an arm without effort."""
 
 RESPONSE = 0.03
-"""Time constant with which the hand's force goes to what is asked for [s]: no arm of flesh makes a step of force."""
+"""Time constant with which the hand's force follows the action [s]: no human arm changes its force in a step."""
 
 NEAR, SLOW = 0.03, 0.05
-"""The flange is at the point when it is as near [m] and as slow [m/s] at the end of a step."""
+"""The flange is at the point if its distance [m] and its speed [m/s] are at most these at the end of a step."""
 
 SPREAD = 0.3
-"""The arm begins as far from its home at most, in each joint [rad]."""
+"""Largest distance of each joint from its home angle at the start [rad]."""
 
 REACH = (0.10, 0.35)
-"""The least and the most distance of the point from where the flange begins [m]."""
+"""Least and largest distance of the point from the flange at the start [m]."""
 
 TURN = 0.5
-"""The point is where the flange would be with each of the first joints turned by this at most [rad]: the arm gets there."""
+"""The point is where the flange would be if each of the first three joints were turned by at most this [rad], so the arm can
+reach it."""
 
 TRIES = 20
-"""Starts that the pendant may refuse, one after the other."""
+"""Largest number of starts in a row that the pendant may refuse."""
 
 WAIT = 5 * TICK_RATE
-"""Ticks after which an arm that did not get free counts as refused."""
+"""Ticks after which a start without free-drive counts as refused."""
 
 QUICK: dict[str, float | bool | str] = {"activation.period": 0.2, "sequence.period": 0.25}
-"""The shortest way into free-drive that the pendant takes without a confirmation; each episode goes it."""
+"""Settings of the shortest activation of free-drive that the pendant allows without a confirmation; each episode uses them."""
 
 PIXELS = (480, 640)
 """Height and width of a picture."""
@@ -67,33 +68,34 @@ _LETTING_GO = Wishes(Inputs(released=frozenset({Button.FREE_DRIVE})), (), ())
 class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     """Bring the flange of an arm in free-drive to a point, by pushing it.
 
-    Each episode: the arm stands in a posture of its own, with errors of calibration and noise of its own. The free-drive button
-    is held until the pendant lets the arm go, hands off, then let go of. From there on a step is 0.05 s, the action is the
-    hand's force, and pendant, sensors and control law do what they do in every session of the product. Free-drive ends by
-    itself when the arm stands for 3 s, or when a limit is exceeded; then the episode ends too.
+    In each episode the arm starts in another posture, with other errors of calibration and other noise. The free-drive button is
+    held, without a hand on the arm, until the pendant frees the arm, and is then released. From there on a step is 0.05 s, the
+    action is the hand's force, and pendant, sensors and control law work as in every session of the product. Free-drive ends by
+    itself when the arm stands for 3 s, or when a limit is exceeded; then the episode ends, too.
 
     Action, (3,) float32: force of the hand on the middle of the flange, axes of W [N]; see `FORCE` and `RESPONSE`.
 
-    Observation, (2 n + 12,) float32 for n joints: what sensors measure, and what a person sees who stands by. The truth is not in
-    it. Names, units and bounds are in `observation_space.quantities`:
+    Observation, (2 n + 12,) float32 for n joints: what sensors measure, and what a person beside the arm sees. It does not
+    contain the truth. Names, units and bounds are in `observation_space.quantities`:
 
         joint_angle     n  rad  from the encoders
         joint_speed     n  rad/s
         flange_position 3  m    of the flange in W, from the measured angles
         flange_velocity 3  m/s  in W
-        way             3  m    from there to the point, in W
-        felt_force      3  N    what the controller takes the hand's force to be, in W: sensor with its offset and noise
+        way             3  m    from the flange to the point, in W
+        felt_force      3  N    the hand's force as the controller estimates it, in W, with the sensor's offset and noise
 
     Reward: metres by which the measured distance to the point got shorter, times 10; 1 more when the flange has come to rest at
-    the point, 1 less when free-drive was left.
+    the point, 1 less when free-drive has ended.
 
-    `terminated`: the flange is at the point (`NEAR`, `SLOW`, as measured), or free-drive was left. Registered ids also truncate.
+    `terminated`: the flange is at the point (`NEAR`, `SLOW`, as measured), or free-drive has ended. An environment
+    that is made by its registered id is also truncated after `STEPS` steps.
 
     `info`: the truth. `distance` [m] of the flange from the point, `position` (3,) and `target` (3,) in W [m]; `is_success`: the
     episode ended at the point, and the true distance is within `NEAR`; `mode`; `events`: their kinds, in one text.
 
     Args:
-        setup: what is simulated, as the header of a session says it: robot, mounting, payload, settings, ...
+        setup: the simulated cell, in the fields of a session's header: robot, mounting, payload, settings, ...
         render_mode: "rgb_array", or None.
 
     Raises:
@@ -135,7 +137,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Put the arm up in a new posture, choose a point, and go into free-drive; a start that is refused is drawn anew.
+        """Start the arm in a new posture, choose a point, and enter free-drive; a refused start is drawn anew.
 
         Args:
             seed: of the random numbers, as Gymnasium has it; postures, points, calibration and noise follow from it.
@@ -143,7 +145,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
 
         Raises:
             BadInput: a posture or a target that makes no sense.
-            RuntimeError: the pendant refused `TRIES` starts, so that something in `setup` is wrong; with the last reason.
+            RuntimeError: the pendant refused `TRIES` starts, so `setup` is wrong; the message has the last reason.
         """
         super().reset(seed=seed)
         given = options or {}
@@ -152,7 +154,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
             posture, self._target = self._draw(given)
             try:
                 reason = self._free(posture)
-            except (BadInput, *BROKEN) as error:  # it stands in an object, or is thrown away by one
+            except (BadInput, *BROKEN) as error:  # the arm starts inside an object, or is thrown away by one
                 reason = str(error)
             if not reason:
                 self._force = np.zeros(3)
@@ -200,13 +202,13 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         return self._camera.picture(snapshot, [Marker(self._target, NEAR)], arrows=True)
 
     def close(self) -> None:
-        """Let go of what pictures need."""
+        """Free the camera."""
         if self._camera is not None:
             self._camera.close()
             self._camera = None
 
     def _draw(self, given: dict[str, Any]) -> tuple[Array, Array]:
-        """A posture to begin with, and a point in W."""
+        """The first posture, and a point in W."""
         arm, rng = self._prepared.arm, self.np_random
         while True:
             if "posture" in given:
@@ -232,7 +234,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         return np.clip(posture, middle - 0.9 * half, middle + 0.9 * half)
 
     def _free(self, posture: Array) -> str:
-        """Put the arm up and go into free-drive; why it was refused, "" where it was not."""
+        """Start the arm and enter free-drive. Returns why this was refused, or "" if it was not."""
         prepared = self._prepared
         seed = int(self.np_random.integers(2**31))
         scenario = msgspec.structs.replace(prepared.scenario, posture=posture.tolist(), seed=seed)

@@ -1,7 +1,7 @@
-"""Many environments of guiding to a point side by side: as many processes as there are cores, several environments in each.
+"""Many environments of `GuideToPoint` side by side: one process for each core, several environments in each process.
 
-Gymnasium's own `AsyncVectorEnv` gives each environment a process. Eight of them on two cores are spread by the
-system as it comes: one core has five to step while the other, with three, waits. Here each core has its share.
+Gymnasium's own `AsyncVectorEnv` gives each environment a process. The system spreads eight of them unevenly over two cores: one
+core may have five environments to step, while the other, with three, waits. Here each core has its share.
 """
 
 import multiprocessing
@@ -22,7 +22,7 @@ from app.files.bad_input import BadInput
 from app.learning.environments import GUIDE_TO_POINT
 
 Result = tuple[NDArray[Any], float, bool, bool, dict[str, Any]]
-"""What `gymnasium.Env.step` gives; of a reset, with reward 0 and not ended."""
+"""Result of `gymnasium.Env.step`; after a reset the reward is 0, and the episode has not ended."""
 
 
 class InProcesses(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
@@ -32,12 +32,12 @@ class InProcesses(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
     An environment that has ended is reset by the next step (`AutoresetMode.NEXT_STEP`), whose action it does not use.
 
     Args:
-        num_envs: environments.
-        processes: at most so many; None: as many as cores.
+        num_envs: number of environments.
+        processes: largest number of processes; None: one for each core.
         options: of `gymnasium.make` and of the environment.
 
     Raises:
-        BadInput: fewer than one environment or process; and what the environment raises.
+        BadInput: there would be no environment or no process. Errors of the environment are raised, too.
     """
 
     def __init__(self, num_envs: int, processes: int | None = None, **options: Any) -> None:
@@ -65,16 +65,17 @@ class InProcesses(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
 
     @property
     def pids(self) -> list[int]:
-        """The processes."""
+        """Ids of the processes."""
         return [process.pid for _, _, process in self._workers]
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[Any], dict[str, Any]]:
-        """As `gymnasium.vector.VectorEnv.reset`: one seed is that of the first, counted up for the others.
+        """As `gymnasium.vector.VectorEnv.reset`: a single seed is that of the first environment, and is counted up for the
+        others.
 
         Raises:
-            ValueError: another number of seeds than of environments.
+            ValueError: the number of seeds is not that of environments.
         """
         if isinstance(seed, int):
             seed = [seed + k for k in range(self.num_envs)]
@@ -95,7 +96,7 @@ class InProcesses(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
         return self._gathered()
 
     def render(self) -> tuple[Any, ...] | None:
-        """A picture of each."""
+        """A picture of each environment."""
         for _, pipe, _ in self._workers:
             pipe.send(("render", ()))
         return tuple(self._answers())
@@ -103,11 +104,11 @@ class InProcesses(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
     def close_extras(self, **_unused: Any) -> None:
         """End the processes."""
         for _, pipe, process in self._workers:
-            pipe.close()  # the process ends when nobody can ask it any more
+            pipe.close()  # the process ends when its pipe is closed
             process.join()
 
     def _answers(self) -> list[Any]:
-        """What each environment answers, in order; an error of one is raised when all have answered."""
+        """The answer of each environment, in order; an error is raised when all have answered."""
         answers: list[Any] = [None] * self.num_envs
         failed: list[BaseException] = []
         for share, pipe, _ in self._workers:
@@ -134,7 +135,8 @@ class InProcesses(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
         )
 
     def _infos(self, told: Sequence[dict[str, Any]]) -> dict[str, Any]:
-        """Infos as Gymnasium puts them together, but column by column where all have the same: meanwhile all cores wait."""
+        """Infos in Gymnasium's form, but made column by column if all have the same keys, which is faster: all cores wait for
+        it."""
         infos: dict[str, Any] = {}
         if any(info.keys() != told[0].keys() for info in told):  # some have just been reset
             for k, info in enumerate(told):
@@ -176,13 +178,13 @@ def _begun(env: gymnasium.Env[Any, Any], **how: Any) -> Result:
 
 
 def _work(pipe: Connection, count: int, options: dict[str, Any]) -> None:
-    """Do what is asked until nobody asks any more; an error is the answer then."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # who asks ends this
+    """Answer the requests of the parent process until it closes the pipe. If a request fails, the answer is the error."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process ends this one, not Ctrl-C
     with suppress(EOFError, BrokenPipeError):
         try:
             share = _Share(count, options)
             pipe.send(share.spaces())
-        except Exception as error:  # noqa: BLE001 - it is told to who asks
+        except Exception as error:  # noqa: BLE001 - it is sent to the parent process
             pipe.send(error)
             return
         while True:

@@ -19,10 +19,10 @@ from app.learning.feature_statistics import Values, flat, joined, statistics
 
 VERSION = "v3.0"
 CHUNK = 1000
-"""Files in a folder."""
+"""Largest number of files in a folder."""
 
 FILE_MEGABYTES, VIDEO_MEGABYTES = 100, 200
-"""What files of the format are to stay below [MB]."""
+"""Largest sizes of a table and of a video in this format [MB]."""
 
 DATA = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 EPISODES = "meta/episodes/chunk-000/file-000.parquet"
@@ -33,7 +33,7 @@ COUNTERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
 
 
 def parquet():
-    """PyArrow and its Parquet.
+    """PyArrow and its module for Parquet.
 
     Raises:
         BadInput: it is not installed.
@@ -47,7 +47,7 @@ def parquet():
 
 
 class DataSet:
-    """A data set that is being written. `add` each demonstration, then `close`; until then nothing stands in its folder.
+    """A data set that is being written. `add` each demonstration, then `close`; until then the folder is not there or is empty.
 
     Args:
         folder: of the data set; it must not be there, or be empty.
@@ -100,7 +100,7 @@ class DataSet:
         self._shown.append((shown, seen))
 
     def close(self) -> int:
-        """Write all, and put the folder in its place; returns the number of demonstrations.
+        """Write the tables, and move the folder to its place. Returns the number of demonstrations.
 
         Raises:
             BadInput: none was added, or a file cannot be written.
@@ -136,7 +136,7 @@ class DataSet:
         return len(rows)
 
     def _row(self, shown: Demonstration, number: int, first: int) -> dict[str, Any]:
-        """What is known of a demonstration, but for its statistics."""
+        """A demonstration's row in the table of episodes, without its statistics."""
         count, place = shown.ticks.size, _place(number)
         row: dict[str, Any] = {
             "episode_index": number,
@@ -158,24 +158,25 @@ class DataSet:
         return row
 
     def _write_rows(self, tables: list[Any]) -> None:
-        """One file: an hour at 25 rows a second has 20 MB, a fifth of what the format allows. A demonstration is a row group."""
+        """Write the data as one file: an hour at 25 rows a second has 20 MB, a fifth of what the format allows. Each
+        demonstration is a row group."""
         path = self._part / DATA.format(chunk_index=0, file_index=0)
         with self._pq.ParquetWriter(path, tables[0].schema, compression="snappy") as writer:
             for table in tables:
                 writer.write_table(table)
 
     def discard(self) -> None:
-        """Throw away what was written."""
+        """Delete the written files."""
         shutil.rmtree(self._beside, ignore_errors=True)
 
     def _column(self, values: NDArray[Any]) -> Any:
-        """A column of the table: more than one number is a list of fixed length, as LeRobot has it."""
+        """A column of the table. Several numbers in a row are a list of fixed length, as in LeRobot."""
         flat = self._pa.array(values.ravel())
         size = values.size // len(values)
         return flat if size == 1 else self._pa.FixedSizeListArray.from_arrays(flat, size)
 
     def _write_tasks(self) -> None:
-        """The sentences; LeRobot reads them with pandas, by their index, which the metadata makes of a plain table."""
+        """Write the table of tasks. LeRobot reads it with pandas and needs the task's sentence as index; the metadata says so."""
         plain = {"metadata": None, "pandas_type": "int64", "numpy_type": "int64"}
         text = {"metadata": None, "pandas_type": "unicode", "numpy_type": "object"}
         columns = [{"name": "task_index", "field_name": "task_index", **plain}, {"name": "task", "field_name": "task", **text}]
@@ -211,7 +212,8 @@ def _place(number: int) -> dict[str, int]:
 
 
 def _columns(shown: Demonstration, kinds: list[str], *, rate: int, number: int, first: int) -> Values:
-    """The columns of a demonstration: (k,) or (k, m). `kinds` are those of events, `first` is the data set's row of its first."""
+    """The columns of a demonstration: (k,) or (k, m). `kinds`: kinds of events; `first`: number, in the data
+    set, of the demonstration's first row."""
     count = shown.ticks.size
     return {
         STATE: shown.angles,
@@ -231,7 +233,8 @@ def _columns(shown: Demonstration, kinds: list[str], *, rate: int, number: int, 
 
 
 def _features(joints: list[str], kinds: list[str], rate: int, pictures: tuple[int, int] | None) -> dict[str, Any]:
-    """What a row holds. Names have units; axes are those of B. An event has a number of its own: 1 where it happened."""
+    """Names, types and sizes of the columns. Names have units; axes are those of B. Each kind of event has a number: 1 where it
+    happened."""
     force = [f"{axis} [{unit}]" for axis, unit in zip(("fx", "fy", "fz", "tx", "ty", "tz"), ["N"] * 3 + ["N m"] * 3, strict=True)]
     vectors = {
         STATE: [f"{name} [rad]" for name in joints],

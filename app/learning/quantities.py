@@ -1,4 +1,4 @@
-"""Spaces of numbers with names and units: what an observation or an action holds, and where."""
+"""Spaces of numbers with names and units, for observations and actions."""
 
 from typing import NamedTuple
 
@@ -13,13 +13,13 @@ class Quantity(NamedTuple):
     name: str
     size: int
     unit: str
-    low: tuple[float, ...]  # (size,) the least that can be told
-    high: tuple[float, ...]  # (size,) the most
+    low: tuple[float, ...]  # (size,) lower bounds
+    high: tuple[float, ...]  # (size,) upper bounds
     text: str  # what it is, and in which frame
 
 
 def even(name: str, bounds: tuple[float, ...], unit: str, text: str) -> Quantity:
-    """A quantity that is as large to both sides of zero: -bounds to bounds."""
+    """A quantity with symmetric bounds: -bounds to bounds."""
     return Quantity(name, len(bounds), unit, tuple(-bound for bound in bounds), bounds, text)
 
 
@@ -43,7 +43,7 @@ class QuantityBox(gymnasium.spaces.Box):
         """Where the numbers of a quantity are.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: there is no quantity of that name.
         """
         begin = 0
         for each in self.quantities:

@@ -11,7 +11,7 @@ from app.files.bad_input import ABSENT, BadInput
 
 CODEC, PIXELS = "libx264", "yuv420p"
 GROUP = 2
-"""Every second picture stands for itself: who learns from a video opens it at any frame."""
+"""Distance of key frames. Every second picture is one, because a data loader starts reading at any frame."""
 
 QUALITY = "23"  # the encoder's constant rate factor
 
@@ -24,7 +24,7 @@ class Video:
         rate: pictures a second.
 
     Raises:
-        BadInput: the file cannot be written, or there is nothing to encode with.
+        BadInput: the file cannot be written, or PyAV is not installed.
     """
 
     def __init__(self, path: Path, rate: int) -> None:
@@ -55,7 +55,7 @@ class Video:
 
 
 def encoder():
-    """PyAV, which has FFmpeg's encoders in it.
+    """PyAV, which contains FFmpeg's encoders.
 
     Raises:
         BadInput: it is not installed.

@@ -1,4 +1,4 @@
-"""What is in a chunk of an MCAP file: unpacked, and checked against its check sum."""
+"""The content of a chunk of an MCAP file: unpacked, and checked against its check sum."""
 
 import struct
 import zlib
@@ -14,11 +14,11 @@ HEAD = struct.Struct("<BQQQQII")
 """Opcode, length, times of the first and the last message [ns], unpacked size, check sum, length of the compression's name."""
 
 CHUNK = 64
-"""Bytes of a chunk's record that say all but its content."""
+"""Bytes at the start of a chunk's record that are enough to read its head."""
 
 
 class ChunkHead(NamedTuple):
-    """What stands before a chunk's content."""
+    """The head of a chunk: the fields before its content."""
 
     first: int  # time [ns]
     last: int
@@ -30,7 +30,8 @@ class ChunkHead(NamedTuple):
 
 
 def head_of(record: bytes) -> ChunkHead:
-    """Of a chunk's record, or of its first bytes. Raises struct.error or ValueError: these are none of a chunk."""
+    """The head of a chunk, from its record or the first bytes of it. Raises struct.error or ValueError: the bytes are not a
+    chunk's."""
     _, _, first, last, size, check_sum, length = HEAD.unpack_from(record)
     if length > 16:
         raise ValueError("a chunk that is packed in another way")
@@ -43,7 +44,7 @@ def chunk_body(record: bytes) -> bytes:
     """The content of a whole record of a chunk.
 
     Raises:
-        ValueError, struct.error: it cannot be unpacked, or is not what was written.
+        ValueError, struct.error: it cannot be unpacked, or its check sum is wrong.
     """
     head = head_of(record)
     if head.uncompressed_size > LARGEST or head.compression not in ("zstd", ""):

@@ -1,4 +1,4 @@
-"""Where everything is in an MCAP file that is open."""
+"""The places of chunks, attachments and metadata in an open MCAP file."""
 
 import io
 import os
@@ -21,10 +21,10 @@ from app.files.bad_input import ABSENT, BadInput
 from app.mcap_file.file_summary import MAGIC
 
 UNREADABLE = (EndOfFile, McapError, struct.error, ValueError, KeyError, IndexError, OverflowError, EOFError)
-"""What goes wrong where bytes are not what they should be."""
+"""Errors that damaged bytes raise."""
 
 HEAD = 9
-"""Opcode and length of a record [bytes]."""
+"""Size of the opcode and length before each record [bytes]."""
 
 LARGEST = 1 << 28
 """Largest record other than a chunk that is read [bytes]."""
@@ -32,7 +32,7 @@ LARGEST = 1 << 28
 
 @dataclass(slots=True)
 class ChunkTable:
-    """A file that is open."""
+    """An open file, and where its parts are."""
 
     path: Path
     file: FileIO
@@ -42,17 +42,17 @@ class ChunkTable:
     attachments: dict[str, tuple[int, int]] = field(default_factory=dict)  # place and length of each by its name
     notes: dict[str, dict[str, str]] = field(default_factory=dict)
     indices: dict[int, "array[int]"] = field(default_factory=dict)
-    # of a channel: place and length of each chunk that has messages of it, place of their index; all in one row
+    # for each channel a flat list of triples: place and length of a chunk with its messages, place of their index
     end: int = len(MAGIC)  # of the last whole record of data
     lost: int = -1  # bytes that follow it without making a whole chunk; -1: the file's end follows
 
     @property
     def whole(self) -> bool:
-        """The file has its end."""
+        """The file has its end, with the summary."""
         return self.lost < 0
 
     def read(self, at: int, length: int) -> bytes:
-        """Bytes of the file. Raises EOFError: it has not so many."""
+        """`length` bytes of the file from `at` on. Raises EOFError: the file is too short."""
         data = os.pread(self.file.fileno(), length, at)
         if len(data) != length:
             raise EOFError
@@ -74,11 +74,11 @@ class ChunkTable:
         return found[0]
 
     def chunks_of(self, channel: int) -> NDArray[np.int64]:
-        """(k, 3) place and length of each chunk with messages of a channel, and place of the index of these."""
+        """(k, 3) place and length of each chunk with messages of a channel, and place of the index of these messages."""
         return np.array(self.indices.get(channel, ()), dtype=np.int64).reshape(-1, 3)
 
     def forget(self) -> None:
-        """Nothing is known of the file."""
+        """Forget all places."""
         for found in (self.schemas, self.channels, self.attachments, self.notes, self.indices):
             found.clear()
 
@@ -88,7 +88,7 @@ class ChunkTable:
 
 
 def damaged(path: Path, at: int, error: BaseException) -> BadInput:
-    """What is said of bytes that are not what they should be."""
+    """The error for damaged bytes at a place of a file."""
     return BadInput(path.name, f"byte {at}", ABSENT, f"is damaged ({str(error) or type(error).__name__})")
 
 
@@ -101,14 +101,14 @@ def take_chunk(table: ChunkTable, place: int, length: int, indices: Iterable[tup
 
 
 def take_note(table: ChunkTable, body: bytes) -> str:
-    """Take in texts by name; the name of them all."""
+    """Take in a metadata record, texts by name. Returns the record's name."""
     note = Metadata.read(stream(body))
     table.notes[note.name] = note.metadata
     return note.name
 
 
 def declare(table: ChunkTable, code: int, body: bytes) -> None:
-    """Take in a schema or a channel; other records are let be."""
+    """Take in a schema or a channel; other records are ignored."""
     if code == Opcode.SCHEMA:
         schema = Schema.read(stream(body))
         table.schemas[schema.id] = schema
@@ -118,12 +118,12 @@ def declare(table: ChunkTable, code: int, body: bytes) -> None:
 
 
 def bounded(length: int) -> int:
-    """The length of a record that is to be read whole. Raises ValueError: it is too large."""
+    """The length of a record, checked before the record is read. Raises ValueError: it is too large."""
     if length > LARGEST:
         raise ValueError("a record that is too large")
     return length
 
 
 def stream(data: bytes) -> Any:
-    """Bytes as the mcap library reads them."""
+    """The bytes as a stream of the mcap library."""
     return ReadDataStream(io.BytesIO(data))

@@ -1,4 +1,4 @@
-"""Writes an MCAP file chunk by chunk, each one whole, so that a killed process or a full disk leaves all but the last ones.
+"""Writes an MCAP file chunk by chunk, each one whole, so that after a crash or on a full disk only the last ones are lost.
 
 The records are the mcap library's; messages that come as numpy rows are laid out here, since one call a message would cost
 more than the tick that they record.
@@ -25,7 +25,7 @@ from app.files.bad_input import ABSENT, BadInput
 from app.mcap_file.file_summary import MAGIC, FileSummary, index_of
 
 LEVEL = 1
-"""Of compression: fast."""
+"""Level of compression: the fastest."""
 
 MESSAGE = struct.Struct("<BQHIQQ")
 """Start of a message: opcode, length, channel, sequence, log and publish time."""
@@ -34,7 +34,7 @@ INDEX = struct.Struct("<BQHI")
 """Start of a message index: opcode, length, channel, bytes of the pairs that follow."""
 
 Index = tuple[int, np.ndarray[Any, Any]]
-"""A channel and its messages in a chunk, (k, 2): time [ns], offset."""
+"""A channel, and time [ns] and offset of each of its messages in a chunk, (k, 2)."""
 
 
 class Container:
@@ -53,8 +53,8 @@ class Container:
             raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
         self._regular = stat.S_ISREG(os.fstat(self._file.fileno()).st_mode)
         self._summary = FileSummary()
-        self._at = 0  # end of what is whole [bytes]
-        self._together: dict[int, str] = {}  # of a channel: the chunks that its messages stand in
+        self._at = 0  # end of the last whole record [bytes]
+        self._together: dict[int, str] = {}  # of each channel: `together` as declared
         self._pending: dict[str, list[tuple[int, int, bytes]]] = {}
         self._sequence: dict[int, int] = {}
         self._compressor = zstandard.ZstdCompressor(level=LEVEL)
@@ -67,7 +67,7 @@ class Container:
 
     @property
     def end(self) -> int:
-        """Room that the file's end will take [bytes], about."""
+        """Approximate size of the file's end [bytes]."""
         return self._summary.size
 
     def channel(
@@ -81,7 +81,7 @@ class Container:
         together: str,
         metadata: Mapping[str, str] = {},
     ) -> int:
-        """Declare a topic; its number.
+        """Declare a topic. Returns the number of its channel.
 
         Args:
             topic: such as /state.
@@ -89,7 +89,7 @@ class Container:
             text: the schema.
             encoding: of the messages: "cdr" or "json".
             of_schema: "ros2msg" or "jsonschema".
-            together: topics with the same word share their chunks; who reads others need not read these.
+            together: topics with the same word share their chunks; a reader of other topics need not read these.
         """
         summary = self._summary
         known = next((number for number, each in summary.schemas.items() if each.name == schema), None)
@@ -130,8 +130,8 @@ class Container:
         self._pending.setdefault(self._together[channel], []).append((channel, time, data))
 
     def flush(self, rows: list[np.ndarray[Any, Any]]) -> None:
-        """Write blocks of whole message records, each of one channel, and the messages of `add`: a chunk for each block and for
-        those that share one. Either all of it is in the file then, or nothing.
+        """Write blocks of whole message records, each of one channel, and the messages of `add`. Each block becomes a chunk, and
+        so does each group of added messages whose channels share chunks. Afterwards all of it is in the file, or nothing.
 
         Raises:
             OSError: the disk is full or gone.
@@ -155,7 +155,7 @@ class Container:
         self._file.close()
 
     def abandon(self) -> None:
-        """Nothing more can be written: end the file where it is whole, with its end if there is room for that."""
+        """End the file after its last whole record, because nothing more can be written; with its end if there is room for it."""
         with suppress(OSError):
             self._put(self._summary.write(self._at))
         with suppress(OSError):

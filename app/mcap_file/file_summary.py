@@ -1,4 +1,4 @@
-"""What stands at the end of an MCAP file, so that a reader finds all else: found out while writing, or again from a cut file."""
+"""The summary at the end of an MCAP file, by which a reader finds the rest; made while writing, or again from a cut file."""
 
 from mcap.data_stream import RecordBuilder
 from mcap.records import (
@@ -17,7 +17,7 @@ MAGIC = b"\x89MCAP0\r\n"
 
 
 class FileSummary:
-    """What stands at a file's end: found out while writing, or again from a file without its end.
+    """The summary at a file's end: made while writing, or again from a file without its end.
 
     Attributes:
         chunks: indices of chunks that may still change.
@@ -30,12 +30,12 @@ class FileSummary:
         self.attachments: list[AttachmentIndex] = []
         self.metadata: list[MetadataIndex] = []
         self.counts: dict[int, int] = {}
-        self._done = bytearray()  # indices of chunks that do not change any more, as they will stand in the file
+        self._done = bytearray()  # indices of chunks that do not change any more, as bytes of the file
         self._done_count = 0
         self._span: list[int] = []  # times of the first and the last message in them [ns]
 
     def done(self, chunk: ChunkIndex) -> None:
-        """Take the index of a chunk that will not change: as bytes, for in a day there are 345,600 of them."""
+        """Add the index of a chunk that will not change. It is kept as bytes, because a day has 345,600 of them."""
         builder = RecordBuilder()
         chunk.write(builder)
         self._done += builder.end()
@@ -45,7 +45,7 @@ class FileSummary:
 
     @property
     def size(self) -> int:
-        """What `write` will take [bytes], about."""
+        """Approximate size of the result of `write` [bytes]."""
         return len(self._done) + sum(len(each.data) for each in self.schemas.values()) + (1 << 12)
 
     def write(self, start: int) -> bytes:

@@ -1,4 +1,4 @@
-"""Puts back the end of an MCAP file that a killed process or a full disk left without one."""
+"""Writes the missing end of an MCAP file, after a killed process or a full disk."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ MENDED = "mended"
 
 
 def repair(path: Path) -> bool:
-    """Put back a file's end; True if it was missing. What follows the last whole chunk is cut.
+    """Write a file's end if it is missing; True if it was. Bytes after the last whole chunk are cut off.
 
     Raises:
         BadInput: the file cannot be read or written, is no MCAP file, or is damaged before its last record.

@@ -1,6 +1,6 @@
-"""Opens an MCAP file: finds what is where in it, and reads none of its messages.
+"""Opens an MCAP file: finds the places of its parts, and reads none of its messages.
 
-A file with its end says that itself; one without is gone through from record to record.
+They are in the summary at the file's end. In a file without its end they are found by reading record after record.
 """
 
 import os
@@ -17,13 +17,14 @@ from app.mcap_file.file_summary import MAGIC, FileSummary
 from app.mcap_file.walk import Walk
 
 CHUNK_INDEX, ENTRY = struct.Struct("<QQQQI"), struct.Struct("<HQ")
-"""Of a chunk: times of its first and last message, place, length, bytes of its entries; of one: channel, place of its index."""
+"""A chunk's index: times of its first and last message, place, length, bytes of its entries. An entry: channel, place of its
+message index."""
 
 LONGEST_HEADER = 1 << 16
-"""Of the first record [bytes]."""
+"""Largest length of the first record, the header [bytes]."""
 
 FOOTER = struct.Struct("<BQQQI")
-"""Opcode, length, begin of the summary, of its offsets, check sum."""
+"""Opcode, length, place of the summary, place of its offsets, check sum."""
 
 
 def open_table(path: Path) -> ChunkTable:
@@ -43,7 +44,8 @@ def open_table(path: Path) -> ChunkTable:
 
 
 def summary_of_cut(path: Path) -> tuple[FileSummary, ChunkTable] | None:
-    """What should stand at the end of a file that has none; None: it has one. Raises BadInput as `open_table`."""
+    """The summary that is missing at the end of a file, and its table; None: it is not missing. Raises BadInput as
+    `open_table`."""
     table = _opened(path)
     if _by_its_end(table):
         table.close()
@@ -68,7 +70,7 @@ def _opened(path: Path) -> ChunkTable:
 
 
 def _must_begin(table: ChunkTable) -> None:
-    """Read the first record. Raises one of UNREADABLE: it is no header."""
+    """Read the first record. Raises one of UNREADABLE: this is not a header."""
     head = table.read(len(MAGIC), HEAD)
     length = int.from_bytes(head[1:], "little")
     if head[0] != Opcode.HEADER or length > LONGEST_HEADER:
@@ -77,7 +79,7 @@ def _must_begin(table: ChunkTable) -> None:
 
 
 def _by_its_end(table: ChunkTable) -> bool:
-    """Take in what stands at the file's end; False: nothing does, it is damaged, or it does not list the chunks."""
+    """Take in the summary at the file's end; False: it is missing or damaged, or does not list the chunks."""
     tail = FOOTER.size + len(MAGIC)
     if table.size < len(MAGIC) + tail:
         return False
@@ -98,7 +100,7 @@ def _by_its_end(table: ChunkTable) -> bool:
 
 
 def _summary(table: ChunkTable, data: bytes) -> bool:
-    """Take in the records of the summary; whether they list the chunks, if there are any."""
+    """Take in the records of the summary. Returns whether they list all chunks."""
     at, chunks, counted = 0, 0, -1
     while at < len(data):
         code, length = data[at], int.from_bytes(data[at + 1 : at + HEAD], "little")

@@ -1,4 +1,4 @@
-"""Whole numbers in little memory: runs of even steps, of which the times of a topic mostly are one."""
+"""Stores whole numbers in little memory, as runs of equal steps. The times of a topic are mostly a single run."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,11 +6,11 @@ from numpy.typing import NDArray
 Numbers = NDArray[np.int64]
 
 LONGEST_STEP = 1 << 14
-"""A step that is longer is not looked for."""
+"""Largest step that is looked for."""
 
 
 class Runs:
-    """Numbers in order.
+    """Numbers, kept as runs of equal steps.
 
     Args:
         numbers: (n,).
@@ -35,11 +35,12 @@ class Runs:
         return self._first[run] + (places - self._rows[run]) * self._step
 
     def all(self) -> Numbers:
-        """All of them."""
+        """All numbers."""
         return self.between(0, self._length)
 
     def at_or_before(self, numbers: Numbers) -> NDArray[np.int64]:
-        """Of rising ones: the place of the last that is not above each of `numbers`; -1: all are."""
+        """If the stored numbers rise: for each of `numbers` the place of the last stored one that is not larger; -1: all are
+        larger."""
         if not self._length:
             return np.full(len(numbers), -1, dtype=np.int64)
         run = np.searchsorted(self._first, numbers, side="right") - 1

@@ -15,19 +15,19 @@ from app.mcap_file.chunk_table import UNREADABLE, ChunkTable, damaged
 from app.mcap_file.runs import Runs
 
 KEPT = 4
-"""Unpacked chunks that are kept: of who reads message by message, the next one is mostly in the same."""
+"""Number of unpacked chunks that are kept: a reader that goes message by message mostly needs the same chunk again."""
 
 UNPACKING = 2
-"""Threads that unpack chunks beside the one that reads them."""
+"""Number of threads that unpack chunks, beside the reading thread."""
 
 AHEAD = 6
-"""Chunks that are unpacked ahead."""
+"""Number of chunks that are unpacked ahead."""
 
 INDEX = struct.Struct("<BQHI")
 """Start of a message index: opcode, length, channel, bytes of the pairs that follow."""
 
 GUESS = INDEX.size + 16 * 160
-"""Bytes that a message index has at most, mostly."""
+"""A size that most message indices do not exceed [bytes]."""
 
 MESSAGE = struct.Struct("<BQHIQQ")
 """Start of a message: opcode, length, channel, sequence, log and publish time."""
@@ -36,20 +36,20 @@ Offsets = NDArray[np.int64]
 
 
 class Messages:
-    """Opens in time that grows with the number of chunks; messages themselves are not read for that.
+    """The messages of a topic. To make this takes a time that grows with the number of chunks; it reads no messages.
 
     Args:
         table: of the file.
         topic: such as /state.
-        unit: in which its times are told [ns].
+        unit: of `times` [ns].
 
     Attributes:
-        times: of the messages, as their chunks' indices say it, in units.
+        times: of the messages, from the indices of their chunks, in units.
 
     Raises:
         BadInput: an index is damaged.
         KeyError: the file has no such topic.
-        ValueError: the times are no whole units.
+        ValueError: a time is not a whole number of units.
     """
 
     def __init__(self, table: ChunkTable, topic: str, unit: int) -> None:
@@ -118,7 +118,8 @@ class Messages:
         return body[offset + MESSAGE.size : stop]
 
     def _blocks(self, begin: int, end: int) -> Iterator[tuple[int, int, bytes, Offsets]]:
-        """Of each chunk: numbers of its first message and after its last one that are wanted, content, their places in it."""
+        """For each chunk: number of the first wanted message, number after the last one, content of the chunk, their places in
+        it."""
         if end <= begin:
             return
         low = int(np.searchsorted(self._first, begin, side="right")) - 1

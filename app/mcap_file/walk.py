@@ -1,4 +1,4 @@
-"""Goes through an MCAP file from record to record, also through one that a killed process left without its end."""
+"""Reads an MCAP file record by record, also a file that a killed process left without its end."""
 
 import os
 import struct
@@ -13,16 +13,17 @@ from app.mcap_file.file_summary import MAGIC, FileSummary
 
 
 class Walk:
-    """Goes through the records of a file; the last one may be cut."""
+    """Reads the records of a file; the last record may be cut."""
 
     def __init__(self, table: ChunkTable) -> None:
         self._table = table
         self.summary = FileSummary()
-        self._chunk: ChunkIndex | None = None  # whose message indices follow
-        self._counts: dict[int, int] = {}  # of its messages, by channel
+        self._chunk: ChunkIndex | None = None  # the chunk whose message indices follow
+        self._counts: dict[int, int] = {}  # number of its messages, by channel
 
     def through(self, done: Callable[[ChunkIndex], None]) -> None:
-        """Take in all; `done` is told of each whole chunk. Raises BadInput: the file is damaged before its last record."""
+        """Take in all records; `done` is called with each whole chunk. Raises BadInput: the file is damaged before its last
+        record."""
         table, at = self._table, len(MAGIC)
         ended = False
         while at + HEAD <= table.size:
@@ -39,7 +40,7 @@ class Walk:
             except UNREADABLE as error:
                 raise damaged(table.path, at, error) from None
             at = stop
-        # With a message index that is cut goes its chunk, or messages would be there that are not counted.
+        # If a message index is cut, its chunk is dropped, too: else the file would have messages that are not counted.
         last = self._chunk
         table.end = at
         try:
@@ -93,11 +94,11 @@ class Walk:
         )
 
     def _finish(self, done: Callable[[ChunkIndex], None]) -> None:
-        """All message indices of the last chunk are there."""
+        """Take in the last chunk, whose message indices are complete."""
         chunk, self._chunk = self._chunk, None
         if chunk is None:
             return
-        if chunk.message_index_offsets.keys() - self._table.channels.keys():  # other writers declare them within
+        if chunk.message_index_offsets.keys() - self._table.channels.keys():  # other writers declare channels inside chunks
             for code, body in records_of(self._body(chunk)):
                 declare(self._table, code, body)
         take_chunk(self._table, chunk.chunk_start_offset, chunk.chunk_length, chunk.message_index_offsets.items())
@@ -115,7 +116,7 @@ def channels_of(body: bytes) -> set[int]:
 
 
 def _index(table: ChunkTable, at: int, stop: int) -> ChunkIndex:
-    """The index of a chunk, without what its message indices say."""
+    """The index of a chunk, without the fields that its message indices give."""
     head = head_of(table.read(at, min(CHUNK, stop - at)))
     return ChunkIndex(
         chunk_length=stop - at,

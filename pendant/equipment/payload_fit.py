@@ -19,7 +19,7 @@ from pendant.equipment.load import Load
 from pendant.tick.pose import ORIGIN, Vector
 
 LEAST = 4
-"""Postures needed, as on a UR (facts: payload tools)."""
+"""Least number of postures, as on a UR."""
 
 SPREAD = 0.2
 """Least spread of the directions of gravity across their main one, root mean square of the sine: below it the centre of mass
@@ -32,10 +32,10 @@ GAIN = 0.006
 """Standard uncertainty of the sensor's scale: an error of 1 % at most, all of them equally likely."""
 
 LIGHT = 0.1
-"""Of a load below it the centre cannot be told [kg]."""
+"""Mass of a load below which its centre cannot be found [kg]."""
 
 TOLERATED = 0.1
-"""A mass may be negative by so much and three standard uncertainties, and is nothing then [kg]."""
+"""A fitted mass may be negative by at most this plus three standard uncertainties; then it is set to 0 [kg]."""
 
 
 class Posture(NamedTuple):
@@ -47,7 +47,7 @@ class Posture(NamedTuple):
 
 
 class FittedPayload(NamedTuple):
-    """What the postures say of the load beyond what is known. Uncertainties are standard ones."""
+    """The load beyond the known one, fitted to the postures, with standard uncertainties."""
 
     mass: float  # [kg]
     mass_deviation: float  # [kg]

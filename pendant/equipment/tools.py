@@ -1,4 +1,4 @@
-"""The table of tools: what is told of each, always used as one."""
+"""The table of tools. The data of a tool are always used together: its tool centre point and its load."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,10 +9,10 @@ from pendant.equipment.load import NOTHING, Angles, Load, Moments, Problem, Vect
 from pendant.settings.bounds import Mass
 
 LONGEST = 40
-"""Of a tool's name [characters]."""
+"""Largest length of a tool's name [characters]."""
 
 MOST = 50
-"""Tools in a table."""
+"""Largest number of tools in a table."""
 
 
 class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

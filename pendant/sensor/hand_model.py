@@ -1,7 +1,7 @@
-"""What is taken for a hand's force, and how sure is sure enough that it is none (FD-3, FD-19).
+"""Model of a hand's force, and how sure is sure enough that a force is none of a hand's (FD-3, FD-19).
 
-Rules and hypotheses of whose force it is know a hand by these numbers, and by the setting `unexplained.force`; benches `guided`,
-`use`, `drop` and `drift` hold them.
+The rules and hypotheses that decide whose force it is use these numbers and the setting `unexplained.force`. The benches
+`guided`, `use`, `drop` and `drift` check them.
 """
 
 import math
@@ -9,58 +9,65 @@ import math
 from pendant.settings.schema import ticks
 
 LARGEST = 50.0
-"""A hand's largest force [N]: from here on the activation sequence takes a hand for what hinders the arm (FD-3)."""
+"""Largest force of a hand [N]: as `free_drive.force_cap` ships (FD-3)."""
 
 RISE = 5.0
-"""Ticks that it takes at least to get there: 10 ms."""
+"""Least number of ticks in which a hand's force rises from 0 to `LARGEST`: 10 ms."""
 
 RISES = (1.0, 0.1, 0.01)
-"""Of the fastest, shares of which a hand's rise may be: how fast one is nobody knows, so each order of magnitude is as likely.
-Bench `drop` guards it."""
+"""Assumed speeds at which a hand's force rises, as shares of the fastest (`RISE`). The true speed is unknown, so each order of
+magnitude is equally likely. Bench `drop` checks them."""
 
 DEGREE = 4
-"""Of the polynomial that its force is over some hundredths of a second: it may come, turn round, go. Bench `drop` guards it."""
+"""Degree of the polynomial that describes a hand's force over some hundredths of a second: the force may rise, change its sign
+and fall. Bench `drop` checks it."""
 
 TREMOR = 0.5
-"""What it is off a straight line from tick to tick, and off a constant force within some windows, about [N]."""
+"""Typical deviation of a hand's force from a straight line between ticks, and from a constant force within some windows [N]."""
 
 LIGHT = 5.0
-"""What the flange sensor feels may hang there; the work of a force below this [N] is a light hand's."""
+"""The work of a measured force below this counts as that of a light hand [N]. A larger force that lasts may be the weight of
+something that hangs at the flange."""
 
 GRIP_LEVER = 0.1
-"""Lever of a hand's force about the flange [m]: its torques are so many times its forces."""
+"""Lever of a hand's force about the flange [m]: the torque is the force times this."""
 
 SLOWEST = 3.0
-"""A hand that wants something changes its force faster [N/s]; what is slower may be a sensor's drift."""
+"""Slowest change of force by a hand that leads the arm [N/s]; a slower change may be a sensor's drift."""
 
 TOUCH = ticks(0.5)
-"""Ticks that a grab or a let-go lasts."""
+"""Ticks in which a hand takes hold of the arm or lets it go."""
 
 KEEPS = 1.5
-"""Time constant with which a change along gravity that stays becomes a payload's [s]: a sensor that drifts by 2 N/s stays below
-3 N."""
+"""Time constant with which a lasting change of force along gravity is counted as payload [s]: with it a sensor that drifts by
+2 N/s shows less than 3 N."""
 
 LASTS = ticks(KEEPS)
-"""Ticks for which who was felt may be there still: a hand that turns round is not felt for a while. Bench `guided` guards it."""
+"""Ticks for which a hand that was felt may still be there: while a hand changes its direction it is not felt. Bench `guided`
+checks it."""
 
 STEADY = 5.0
-"""So long no hand holds still to within its tremor [s]; and so long it may lead a moving arm gently up or down."""
+"""No hand keeps its force constant, within `TREMOR`, for longer than this [s]. Nor does a hand lead a moving arm gently up or
+down for longer."""
 
 TOUCHES = 2000.0
-"""Of so many grabs and let-goes at most one may be taken for a payload that falls (bench `observer`, `drop`)."""
+"""Number of times that a hand takes hold or lets go, of which at most one may count as a falling payload (benches `observer`,
+`drop`)."""
 
 KNOWN = math.log(TOUCHES * TOUCH)
-"""Log of the odds from which on it is known [nats]: else odds of K come up in one of K trials at most (Ville)."""
+"""Log of the odds from which a change counts as known [nats]. Without a change, odds of K are reached in at most one of K trials
+(Ville's inequality)."""
 
 SUSPECTED = math.log(20.0)
-"""From here on a payload may have changed, and nothing helps a hand: the help may be gone in one tick of 20. A sensor may have
-stepped until a hand is as much likelier, for the help for a step moves an arm that nobody touches."""
+"""Log of the odds from which a payload may have changed [nats]. Then the hand gets no help from the motors: in at most one of 20
+ticks by mistake. A step of the sensor is possible until a hand is 20 times likelier, because help for a step would move an arm
+that nobody touches."""
 
 NOISE = 0.1
-"""Share of the ticks in which noise may make something else of a fall, as the joints feel it. Bench `guided` guards it."""
+"""Share of the ticks in which a payload has fallen, and noise lets the joints feel something else. Bench `guided` checks it."""
 
 RARELY = 3.29
 """Standard deviations that an error exceeds once in a thousand times."""
 
 HALF = 0.5
-"""Of what is asked for, or allowed, this share decides where no model says how much of it is to be expected."""
+"""Share of a required or allowed value that is the threshold, where no model gives the expected value."""

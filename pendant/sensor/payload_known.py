@@ -1,14 +1,15 @@
-"""Error of the payload's mass, told apart from the flange sensor's bias by the postures in which the arm stood (FD-9, FD-11).
+"""Error of the payload's mass, separated from the flange sensor's bias by the postures in which the arm stood (FD-9, FD-11).
 
-A bias turns with the flange, a payload hangs along gravity. In one posture the sensor feels their sum; in two they can be told
-apart. A Kalman filter keeps what all postures said, in axes of F:
+A bias turns with the flange, and a payload pulls along gravity. In one posture the sensor measures their sum; two postures
+separate them. A Kalman filter combines all postures, in axes of F:
 
     -F_user = bias + mass error * a + own,    a = -R_BF^T g
 
-The bias drifts as the sensor's maker says. The mass error may be another one in each posture, for a gripper may have closed on
-the way; `own` is what the sensor's gain makes of the load, and what pulls a little in one posture alone. So what a posture says
-along gravity is never taken for a bias, be it a payload or a hand. A hand across gravity that comes or goes makes a posture teach
-nothing; one that stays contradicts the others. The first postures count only where the same payload explains both.
+The bias drifts as the sensor's maker says. The mass error may differ from posture to posture, because a gripper may have closed
+between them. `own` is the error by the sensor's gain, and a small force that acts in one posture alone, such as that of a hose.
+So a force along gravity in one posture is never taken for a bias, be it of a payload or of a hand. A posture in which a hand's
+force across gravity begins or ends is not used; if such a force stays, it contradicts the other postures. The first two postures
+are used only if one payload error explains both.
 """
 
 import math
@@ -29,36 +30,36 @@ from pendant.tick.pose import Vector
 Array = NDArray[np.float64]
 
 BIAS, RATE, MASS, OWN = slice(0, 3), slice(3, 6), 6, slice(7, 10)
-"""Places in the state [N], [N/s], [kg], [N]."""
+"""Places in the state of bias [N], its rate [N/s], mass error [kg] and `own` [N]."""
 
 SIZE = 10
 
 ANYTHING = 100.0
-"""Standard deviation of a payload error of which nothing is known [kg]: it weighs nothing beside what is measured."""
+"""Standard deviation of an unknown payload error [kg]: so large that only measurements count."""
 
 PULLS = 0.2
-"""Standard deviation of what pulls in one posture and not in another, such as a hose [N]; the sensor's torques into its forces
-make a quarter of it."""
+"""Standard deviation of a force that acts in one posture and not in another, such as that of a hose [N]; the sensor's cross-talk
+from torques to forces makes a quarter of it."""
 
 UNSTEADY = 0.1
 """Standard deviation of a window beyond its noise [N]: an arm that came to rest still swings a little on its gears."""
 
 FALSE_ALARM = 16.3
-"""A chi-square of three values exceeds it by chance once in a thousand times: more contradicts what is known."""
+"""Bound that a chi-square of three values exceeds by chance once in a thousand times: more contradicts what is known."""
 
 STOOD = 10
-"""Windows that an arm must have stood for, so that a posture teaches anything: as for zeroing, a hand on its way is none."""
+"""Windows for which an arm must have stood in a posture, so that it is used: a short stop of a led arm is no posture."""
 
 STILL = ticks(STEADY) // WINDOW
-"""Windows that contradict what is known until that is given up: no hand is as steady."""
+"""Windows in a row that contradict what is known, after which this is given up: no hand is so steady for so long."""
 
 WITNESSES = 2
-"""Postures that must have agreed on bias and payload until a third that does not is believed to have another payload: one alone
-may have been touched all the time."""
+"""Postures that must agree on bias and payload, before a further posture that contradicts them counts as one with another
+payload. A single posture is not enough: a hand may have touched the arm all the time."""
 
 
 TURNED = math.cos(math.radians(10.0))
-"""Gravity in the flange must have turned by so much for a posture to be another witness."""
+"""Cosine of the least angle by which gravity must have turned in the flange's axes, so that a posture counts as another one."""
 
 
 class _Belief(NamedTuple):
@@ -67,19 +68,19 @@ class _Belief(NamedTuple):
     x: Array
     P: Array
     tick: int | None = None  # of the last window
-    postures: int = 0  # that agree on it
+    postures: int = 0  # that agree
     a: Array = np.zeros(3)  # specific force in the last of these [m/s²]
-    compared: bool = False  # its mass error was found in another posture, as the load is configured
+    compared: bool = False  # the mass error was found in another posture, and the configured load is still the same
 
 
 class PayloadKnown:
-    """One window of an arm that stands after the other."""
+    """Learns from the windows of a standing arm, one after the other."""
 
     __slots__ = ("_a", "_before", "_contrary", "_nothing", "_now", "_passed", "_sensor", "_touched", "_windows")
 
     def __init__(self, sensor: SensorSpec) -> None:
         self._sensor = sensor
-        # Of the bias what the maker says is known, all values within that equally likely; of the payload nothing.
+        # All biases within the maker's range are equally likely; the payload is unknown.
         P = np.zeros((SIZE, SIZE))
         P[BIAS, BIAS], P[RATE, RATE] = np.eye(3) * sensor.offset_force**2 / 3.0, np.eye(3) * sensor.drift_force**2 / 3.0
         P[MASS, MASS] = ANYTHING**2
@@ -87,7 +88,7 @@ class PayloadKnown:
         self.forget()
 
     def forget(self) -> None:
-        """The sensor was out: its bias may be another."""
+        """The sensor failed for a while: its bias may have changed."""
         self._now = self._before = self._nothing
         self._a = self._nothing.a  # specific force in this posture
         self._contrary = 0  # windows that contradicted what is known since one agreed with it
@@ -95,7 +96,7 @@ class PayloadKnown:
         self._passed = 0  # windows since one was learned from
 
     def move(self) -> None:
-        """The arm moves: what is felt next is another posture's."""
+        """The arm moves: the next window belongs to another posture."""
         if self._windows or self._touched:
             now = self._before
             if self._windows >= STOOD:
@@ -119,7 +120,7 @@ class PayloadKnown:
         if self._touched:
             return
         self._passed += 1
-        if self._windows >= STOOD and self._passed < STOOD:  # of a posture that is known well one window in so many is enough
+        if self._windows >= STOOD and self._passed < STOOD:  # of a well-known posture one window of so many is enough
             return
         seen, self._passed = self._seen(estimate, force), 0
         if seen is not None:
@@ -133,17 +134,18 @@ class PayloadKnown:
                 self.forget()
 
     def told(self, estimate: Estimate, force: Vector) -> PayloadError | None:
-        """The payload's error from this force, as `learn`, and other postures; None where there are none, or they contradict."""
+        """The payload's error by this force (arguments as in `learn`) and the other postures; None if these are missing or
+        contradict."""
         seen = self._seen(estimate, force) if self._trusted or self._now.compared else None
         return None if seen is None else PayloadError(float(seen.x[MASS]), RARELY * math.sqrt(seen.P[MASS, MASS]))
 
     @property
     def _trusted(self) -> bool:
-        """So many postures agreed on bias and payload that one which does not has another payload."""
+        """Enough postures agreed on bias and payload: one that contradicts them has another payload."""
         return self._now.postures >= WITNESSES
 
     def _predicted(self, tick: int) -> _Belief:
-        """As the sensor may have drifted since the last window."""
+        """The belief of now: the sensor may have drifted since the last window."""
         sensor, now = self._sensor, self._now
         passed = 0.0 if now.tick is None else (tick - now.tick) * TICK
         cools = math.exp(-passed / sensor.warm_up)
@@ -158,12 +160,12 @@ class PayloadKnown:
         return now._replace(tick=tick, x=x, P=P)
 
     def _own(self, estimate: Estimate) -> Array:
-        """Variance (3,) of what is a posture's own, axes of F [N²]."""
+        """Variance (3,) of `own`, the force of one posture alone, axes of F [N²]."""
         weight = estimate.load_mass * _specific(estimate)
         return (self._sensor.gain * weight) ** 2 / 3.0 + PULLS**2
 
     def _seen(self, estimate: Estimate, force: Vector) -> _Belief | None:
-        """With this force; None where no bias and no payload explain it."""
+        """The belief after this force; None if no bias and no payload explain the force."""
         belief = self._predicted(estimate.tick)
         if not self._windows:
             belief = _renewed(belief, self._own(estimate))
@@ -176,7 +178,7 @@ class PayloadKnown:
         return None if off > FALSE_ALARM else seen
 
     def _corrected(self, belief: _Belief, estimate: Estimate, force: Vector) -> tuple[_Belief, float]:
-        """A Kalman filter's step, and how far the force is from what was believed, as a chi-square."""
+        """A step of the Kalman filter, and the distance of the force from the belief, as a chi-square."""
         sensor, x, P, a = self._sensor, belief.x, belief.P, _specific(estimate)
         noise = math.hypot(sensor.noise_force, sensor.noise_acceleration * estimate.load_mass)
         off = -np.array(force) - x[BIAS] - x[OWN] - x[MASS] * a
@@ -190,12 +192,12 @@ class PayloadKnown:
 
 
 def _specific(estimate: Estimate) -> Array:
-    """Specific force of what stands (3,), axes of F [m/s²]."""
+    """Specific force (3,) on a body at rest, axes of F [m/s²]."""
     return -estimate.g_B @ estimate.R_BF
 
 
 def _other_mass(belief: _Belief) -> _Belief:
-    """Nothing is known of the payload's error."""
+    """The belief with an unknown error of the payload."""
     x, P = belief.x.copy(), belief.P.copy()
     x[MASS] = P[MASS] = P[:, MASS] = 0.0
     P[MASS, MASS] = ANYTHING**2
@@ -203,7 +205,7 @@ def _other_mass(belief: _Belief) -> _Belief:
 
 
 def _renewed(belief: _Belief, own: Array) -> _Belief:
-    """In another posture, whose own has the variance `own` (3,)."""
+    """The belief at the begin of another posture, whose own force has the variance `own` (3,)."""
     x, P = belief.x.copy(), belief.P.copy()
     x[OWN] = P[OWN] = P[:, OWN] = 0.0
     P[OWN, OWN] = np.diag(own)

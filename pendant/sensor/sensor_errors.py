@@ -1,4 +1,4 @@
-"""What the flange sensor's mean over a window may be off by, beside its bias: noise, and gain where the load turns."""
+"""Largest error of the flange sensor's mean over a window, beside its bias: by noise, and by its gain when the load turns."""
 
 import math
 
@@ -8,13 +8,14 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.pose import Vector, flat, turned_back
 
 FALSE_ALARM = 5.0
-"""Standard deviations of a window's mean that noise may add: three axes together exceed it once in 65,000 windows."""
+"""Standard deviations of a window's mean that count as noise: three axes together exceed them once in 65,000 windows."""
 
 CENTRE = 0.01
-"""So far at most is a load's centre from where it was told to be [m]: bench `payload` draws it so."""
+"""Largest distance of a load's centre from the configured centre [m], as bench `payload` draws it."""
 
 LEVER = 0.2
-"""A load's centre lies within so much of the flange: a gain error of its weight seems a torque of at most so much [m]."""
+"""Largest distance of a load's centre from the flange [m]: an error of the measured weight by the gain makes a torque error with
+at most this lever."""
 
 
 def window_noise(sensor: SensorSpec, estimate: Estimate) -> float:
@@ -23,22 +24,22 @@ def window_noise(sensor: SensorSpec, estimate: Estimate) -> float:
 
 
 def noise_error(sensor: SensorSpec, estimate: Estimate) -> float:
-    """Of a window's mean force at most, by noise, in all axes together [N]."""
+    """Largest error of a window's mean force by noise, all axes together [N]."""
     return FALSE_ALARM * window_noise(sensor, estimate)
 
 
 def load_weight(estimate: Estimate) -> Vector:
-    """Of the configured load, axes of F [N]."""
+    """Weight of the configured load, axes of F [N]."""
     g, mass = estimate.g_B.tolist(), estimate.load_mass
     x, y, z = turned_back(flat(estimate.R_BF), (g[0], g[1], g[2]))
     return mass * x, mass * y, mass * z
 
 
 def gain_error(sensor: SensorSpec, estimate: Estimate, before: Vector) -> float:
-    """Of the load's weight, since it was `before` [N]: in axes of F."""
+    """Largest error of the force by the gain [N], since the load's weight was `before` (axes of F) [N]."""
     return sensor.gain * math.dist(load_weight(estimate), before)
 
 
 def window_error(sensor: SensorSpec, estimate: Estimate, before: Vector) -> float:
-    """Of a window's mean force at most, since the load's weight was `before` [N]: gain, and noise in all axes together."""
+    """Largest error of a window's mean force [N] since the load's weight was `before` (axes of F) [N]: by gain and by noise."""
     return gain_error(sensor, estimate, before) + noise_error(sensor, estimate)

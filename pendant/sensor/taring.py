@@ -1,7 +1,8 @@
-"""Taring: the flange sensor's zero, what an untouched arm feels, and whether something pulls at it (FD-10, FD-11).
+"""Taring: the flange sensor's zero, its force on an untouched arm, and whether something pulls at the arm (FD-10, FD-11).
 
-The sensor's bias drifts, slowly. While the arm stands, a reference follows the mean of F_user no faster than that; a hand or a
-load comes faster, so that it shows as a difference. What rested on the arm in the first window cannot be told from a bias.
+The sensor's bias drifts slowly. While the arm stands, a reference follows the mean of F_user no faster than the bias can drift.
+The force of a hand or a load comes faster, so it shows as a difference. A force that was there in the first window looks like a
+bias.
 """
 
 import math
@@ -20,29 +21,31 @@ from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, Wrench, flat, norm, turned
 
 WINDOWS = 10
-"""Windows that are kept: the second within which the force must not tremble."""
+"""Windows that are kept: one second, in which the force must not tremble."""
 
 AVERAGED = 5
-"""The latest of them, whose mean becomes the zero: half a second."""
+"""Number of the latest windows whose mean becomes the zero: half a second."""
 
 LEAST_PULL, LEAST_TWIST = 1.5, 0.2
-"""What differs less from the untouched arm is no hand's [N, N·m]: a third of the 5 N that are always to be noticed."""
+"""Least difference from the untouched arm that counts as a hand [N, N·m]: a third of the 5 N that must always be noticed."""
 
 TREMBLE = 2.0
-"""The means of ten windows spread by so many times their noise in less than one of a million seconds: a chi-square of 27."""
+"""Spread of the means of ten windows, over their noise, that noise alone exceeds in less than one of a million seconds: a
+chi-square of 27."""
 
 DUE, OVER = 2.0 / 3.0, 0.5
-"""Shares of a limit of the activation sequence: zeroing is due from the one on, and down to the other."""
+"""Shares of a limit of the activation sequence: zeroing becomes due above the first, and is due until the force is below the
+second."""
 
 
 class Taring:
-    """One tick at a time; all but one in WINDOW only count.
+    """Called in each tick. Only each WINDOW-th call computes something; the others only count.
 
     Attributes:
         zero: is subtracted from the sensor's values, axes of F [N, N·m].
-        reading_zero: F_user of this tick that counts as none where it is told, or pushed with, axes of F [N, N·m]; nothing else
-            goes by it.
-        due: an untouched arm feels what may soon refuse free-drive.
+        reading_zero: the F_user that is subtracted where forces are reported to clients, and in force control, axes of F
+            [N, N·m]; nothing else uses it.
+        due: the force on an untouched arm may soon be so large that free-drive is refused.
     """
 
     __slots__ = ("_count", "_known", "_reference", "_sensor", "_tick", "_weight", "_windows", "due", "reading_zero", "zero")
@@ -56,11 +59,11 @@ class Taring:
         self._count = 0  # ticks in the window that is being filled
         self._windows: deque[Wrench] = deque(maxlen=WINDOWS)  # means of F_user since the arm stands, axes of F
         self._reference: Wrench | None = None  # F_user of the untouched arm, axes of F [N, N·m]
-        self._tick = 0  # in which it was followed last
-        self._weight: Vector = ORIGIN  # of the load then, axes of F [N]
+        self._tick = 0  # of the last change of the reference
+        self._weight: Vector = ORIGIN  # of the load at that tick, axes of F [N]
 
     def restart(self, lost: bool) -> None:
-        """The sensor is out (`lost`), or the configured load changes: the untouched arm is learned again."""
+        """The sensor fails (`lost`), or the configured load changes: the reference of the untouched arm is learned again."""
         self._reference = None
         self._rest()
         if lost:
@@ -105,10 +108,10 @@ class Taring:
         return self._beyond(estimate, self._latest())
 
     def tare(self, estimate: Estimate) -> tuple[Wrench, Event]:
-        """Zero the sensor, where `why_not` had nothing against it.
+        """Zero the sensor; `why_not` returned "" in this tick.
 
         Returns:
-            By how much F_user is less from the next tick on, axes of F [N, N·m]; and the event.
+            The wrench by which F_user is smaller from the next tick on, axes of F [N, N·m]; and the event.
         """
         gone = self._latest()
         self.zero = _less(self.zero, gone)
@@ -116,17 +119,18 @@ class Taring:
         self._reference = _less(self._reference, gone)
         self._windows = deque([_less(window, gone) for window in self._windows], WINDOWS)
         self.due = False
-        x, y, z = (-value for value in gone[:3])  # F_user is minus what the sensor has too much
+        x, y, z = (-value for value in gone[:3])  # F_user is minus the error of the sensor
         values: Values = {"force": math.hypot(x, y, z), "torque": math.hypot(*gone[3:]), "x": x, "y": y, "z": z}
         return gone, Event(Kind.SENSOR_ZEROED, estimate.tick, values)
 
     def shift_reading(self, gone: Wrench) -> None:
-        """F_user is less by so much from this tick on, axes of F: what was told as none stays so."""
+        """F_user is smaller by `gone` from this tick on, axes of F: a force that was reported as zero is still reported as
+        zero."""
         if self.reading_zero is not ZEROS:
             self.reading_zero = _less(self.reading_zero, gone)
 
     def zero_reading(self, estimate: Estimate, wrench: Wrench) -> Event:
-        """Tell forces against this F_user from now on, axes of B [N, N·m], whatever it comes from; the event."""
+        """Report forces relative to this F_user from now on, axes of B [N, N·m], whatever its cause. Returns the event."""
         present = self.reading_zero = in_flange(estimate, wrench)
         values: Values = {"force": math.hypot(*present[:3]), "torque": math.hypot(*present[3:])}
         pulled = "" if self._reference is None or not self._windows else self._pulled(estimate, present, self._reference)
@@ -136,11 +140,11 @@ class Taring:
         return Event(Kind.READING_ZEROED, estimate.tick, values)
 
     def explains(self, estimate: Estimate, wrench: Wrench) -> bool:
-        """The bias of the sensor can be so far off that it alone makes this F_user, axes of B [N, N·m]."""
+        """Whether the bias of the sensor alone can make this F_user, axes of B [N, N·m]."""
         return not self._beyond(estimate, in_flange(estimate, wrench))
 
     def payload_error(self, estimate: Estimate, wrench: Wrench) -> PayloadError | None:
-        """The error of the payload's mass that this F_user shows, axes of B [N, N·m]; None where other postures tell nothing."""
+        """The error of the payload's mass by this F_user, axes of B [N, N·m]; None if no other postures are known."""
         return self._known.told(estimate, self._raw(in_flange(estimate, wrench)))
 
     def _raw(self, present: Wrench) -> Vector:
@@ -155,7 +159,7 @@ class Taring:
             self._windows.clear()
 
     def _follow(self, estimate: Estimate, present: Wrench) -> Wrench:
-        """The reference after a window, in which the load may hang another way than when it was followed last."""
+        """The reference after a window. Since its last change the load may have turned."""
         sensor, last = self._sensor, self._reference
         if last is None:
             last = present
@@ -169,7 +173,7 @@ class Taring:
         return reference
 
     def _pulled(self, estimate: Estimate, present: Wrench, reference: Wrench) -> str:
-        """What pulls or twists at the arm beyond what noise explains, in words, or ""."""
+        """The force or torque on the arm beyond noise, in words, or ""."""
         force, torque = math.dist(present[:3], reference[:3]), math.dist(present[3:], reference[3:])
         if force > LEAST_PULL + noise_error(self._sensor, estimate):
             return f"{force:.1f} N"
@@ -191,7 +195,8 @@ class Taring:
         return tuple([sum(values) / AVERAGED for values in zip(*windows, strict=True)])
 
     def _beyond(self, estimate: Estimate, present: Wrench) -> str:
-        """That the zero would be farther off than it can be, in a clause, or ""; F_user is `present`, axes of F [N, N·m]."""
+        """Why this cannot be the sensor's zero (it is larger than a bias can be), in a clause, or ""; `present`: F_user, axes of
+        F [N, N·m]."""
         sensor = self._sensor
         total = _less(present, self.zero)  # F_user as it would be without any zero
         wrong = sensor.gain * estimate.load_mass * norm(_three(estimate.g_B.tolist()))
@@ -208,7 +213,7 @@ class Taring:
         return ""
 
     def _judge(self, estimate: Estimate, reference: Wrench, limits: ActivationLimits) -> list[Event]:
-        """Whether zeroing is due; told when it becomes so."""
+        """Find out whether zeroing is due; an event says when it becomes due."""
         R_BF = flat(estimate.R_BF)
         wrench = (*turned(R_BF, _three(reference[:3])), *turned(R_BF, _three(reference[3:])))
         felt, share = split(wrench, upward(estimate.g_B.tolist())), 0.0

@@ -27,12 +27,12 @@ GRAVITY = 9.81
 
 
 class FollowingError(NamedTuple):
-    """How far the arm is from the reference that its measurement answers to (RL-1)."""
+    """Distance of the measured arm from the reference of the time of the measurement (RL-1)."""
 
-    joint: int = 0  # the one that has the largest share of its limit
+    joint: int = 0  # the joint with the largest share of its limit
     angle: float = 0.0  # of that joint [rad]
-    limit: float = math.inf  # of it [rad]
-    share: float = 0.0  # of its limit
+    limit: float = math.inf  # of that joint [rad]
+    share: float = 0.0  # angle / limit
     tool: float = 0.0  # at the tool centre point [m]
 
 
@@ -41,13 +41,13 @@ ON_PATH = FollowingError()
 
 
 class LinkForce(NamedTuple):
-    """The least force on a link that explains what the joints feel, beyond what the model may be wrong by (RL-3)."""
+    """The least force on a link that explains the external torques beyond the model's possible error (RL-3)."""
 
-    joint: int = -1  # the last one that feels it: it moves the link
+    joint: int = -1  # the last joint that feels the force: it moves the link
     force: float = 0.0  # [N]
     torque: float = 0.0  # of the joint that needs this force [N·m]
-    twisted: int = 0  # that joint
-    parts: tuple[float, float, float] = (0.0, 0.0, 0.0)  # probability that it meets elbow, forearm, wrist; none: nothing is known
+    twisted: int = 0  # the joint that needs this force
+    parts: tuple[float, float, float] = (0.0, 0.0, 0.0)  # probability that it acts on elbow, forearm, wrist; all 0: unknown
 
 
 NO_LINK_FORCE = LinkForce()
@@ -58,7 +58,7 @@ class MotionMeasures(NamedTuple):
     """What the robot's limits bound, beside speeds and angles (RL-4)."""
 
     momentum: float = 0.0  # of links and payload, the size of the linear one [kg·m/s]
-    power: float = 0.0  # mechanical work a second on what the tool meets; none where that drives the arm [W]
+    power: float = 0.0  # mechanical work a second on the object that the tool touches; 0 if the object drives the arm [W]
     stopping_time: float = 0.0  # until the arm rests, if it were stopped now [s]
     stopping_distance: float = 0.0  # of tool or elbow until then [m]
 
@@ -69,9 +69,9 @@ STANDS = MotionMeasures()
 class JointsFeel(IntEnum):
     """What explains the change of the external torques since free-drive began."""
 
-    NOTHING = 0  # it is within what the joints may err by
-    FALL = 1  # a payload that fell, to within that
-    HAND = 2  # neither
+    NOTHING = 0  # the change is within the joints' possible error
+    FALL = 1  # a payload that fell, within that error
+    HAND = 2  # neither explains it
 
 
 _NO_FORCE = np.zeros(3)
@@ -79,20 +79,20 @@ _NO_FORCE.flags.writeable = False  # all estimates share it
 
 
 class WhoseForce(NamedTuple):
-    """What moves the free arm, as far as flange sensor and joints tell; outside free-drive nothing is told."""
+    """What moves the free arm, as the flange sensor and the joints tell; outside free-drive nothing is known."""
 
     lost_odds: float = -math.inf  # log of the odds that the payload is gone, not a hand that changed [nats]
     lost_share: float = 0.0  # of the payload that is gone then
-    step_odds: float = -math.inf  # log of the odds that the flange sensor stepped, the same way [nats]
+    step_odds: float = -math.inf  # log of the odds that the flange sensor stepped, not a hand [nats]
     step_force: float = 0.0  # size of the step then [N]
-    payload_fell: bool = False  # as the joints tell, without a valid flange sensor
-    joints_feel: JointsFeel = JointsFeel.NOTHING  # there, too
-    tau_hand: Array = _no_joints()  # (n,) of a hand, on a link with that sensor [N·m]
-    tau_certain: Array = _no_joints()  # (n,) what of it a hand makes for certain in this tick [N·m]
+    payload_fell: bool = False  # by the joints, without a valid flange sensor
+    joints_feel: JointsFeel = JointsFeel.NOTHING  # without a valid flange sensor
+    tau_hand: Array = _no_joints()  # (n,) by a hand (on a link, if wrench_valid) [N·m]
+    tau_certain: Array = _no_joints()  # (n,) the part of tau_hand that is certainly a hand's now [N·m]
     powers: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of tau_hand, tau_certain, friction [W]
     energy: float = 0.0  # kinetic, of links and rotors [J]
-    F_link: Array = _NO_FORCE  # force on the flange that explains tau_hand best, in B, with a valid flange sensor [N]
-    F_touch: Array = _NO_FORCE  # the same of a touch of a standing arm [N]
+    F_link: Array = _NO_FORCE  # (3,) force on the flange that explains tau_hand best, in B, with a valid flange sensor [N]
+    F_touch: Array = _NO_FORCE  # (3,) such a force for a touch of the standing arm [N]
 
     def copy(self) -> "WhoseForce":
         """The same values in arrays of their own."""
@@ -131,7 +131,7 @@ class Estimate:
     v_tcp: float  # speed of the tool centre point [m/s]
     v_elbow: float  # speed of the elbow [m/s]
     following: FollowingError = ON_PATH  # of the arm against its reference
-    link_force: LinkForce = NO_LINK_FORCE  # on a link; of what the flange carries, too, without a valid flange sensor
+    link_force: LinkForce = NO_LINK_FORCE  # without a valid flange sensor also on tool and payload
     motion: MotionMeasures = STANDS
     clipped: bool = False  # the flange sensor's force is at the end of its range
     g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
@@ -139,9 +139,9 @@ class Estimate:
     friction: Array = field(default_factory=_no_joints)  # (n,) friction of both sides, with the sign of the speed [N·m]
     friction_deviation: Array = field(default_factory=_no_joints)  # (n,) its standard deviation [N·m]
     tau_ways: Array = field(default_factory=_no_joints)  # (3, n) transmission torque each way (AF-3) [N·m]
-    degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
-    lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
-    touched: bool = False  # the joints feel a contact, so that nothing is learned
+    degraded: bool = False  # not `joints_valid`, but each joint has its motor angle; the rest is estimated (AF-2, AF-3)
+    lost: tuple[tuple[str, int], ...] = ()  # joint sensors that failed: name, joint
+    touched: bool = False  # the joints feel a contact, so nothing is learned
     signals: ContactSignals = field(
         default_factory=ContactSignals
     )  # for the contact detectors, as pendant.contact.contact_monitor says
@@ -149,11 +149,11 @@ class Estimate:
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
     whose: WhoseForce = NOT_ASKED
-    a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
+    a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) acceleration of the flange, in B [m/s²]
     current: Array = field(default_factory=_no_joints)  # (n,) measured motor current, as a share of the largest that it may have
     load_mass: float = 0.0  # configured: payload and tool [kg]
     missing_mass: tuple[float, float] = (0.0, math.inf)  # payload beyond the configured one, its deviation; without sensor [kg]
-    tau_blur: tuple[float, ...] = ()  # (n,) what the output encoders make of tau_ext, at most; (): nothing is known [N·m]
+    tau_blur: tuple[float, ...] = ()  # (n,) largest error of tau_ext by the output encoders; (): unknown [N·m]
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""

@@ -28,7 +28,7 @@ class Monitored(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def limit(self) -> float:
-        """The side that the value is nearer to exceed, or exceeds."""
+        """The limit, low or high, that the value exceeds or is nearer to."""
         return self.low if self.value - self.low < self.high - self.value else self.high
 
 
@@ -56,7 +56,7 @@ class Gauge:
         self.unit = unit
         self.low = low
         self.high = high
-        self.base = high  # as set; `high` may rise and fall with the load
+        self.base = high  # as set; `high` may change with the load
         self.stop = stop
         self.value = 0.0
         self.part = ""
@@ -64,8 +64,8 @@ class Gauge:
         self.beyond = 0  # ticks in a row beyond
 
     def judge(self, value: float, part: str, patience: float = 1.0) -> bool:
-        """Take the value of this tick, of `part`. Returns whether it was beyond for longer than allowed, of which `patience` is
-        the share that is left (FD-12b)."""
+        """Take the value of this tick, of `part`. Returns whether it was beyond its limit for longer than `patience` (0 to 1)
+        times the allowed time (FD-12b)."""
         self.value, self.part = value, part
         if self.low <= value <= self.high:
             self.beyond = 0

@@ -1,4 +1,4 @@
-"""Vectors and poses as plain floats, for what is computed for single points in every tick."""
+"""Vectors and poses as plain floats, for single points that are computed in every tick."""
 
 import math
 from typing import NamedTuple
@@ -48,7 +48,7 @@ def from_rpy(roll: float, pitch: float, yaw: float) -> Rotation:
 def quaternion(R: Rotation) -> Quaternion:
     """The quaternion wxyz of unit length of a rotation matrix, by its largest component, which is taken positive."""
     a, b, c, d, e, f, g, h, i = R
-    squares = (1.0 + a + e + i, 1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i)  # four times those of w, x, y, z
+    squares = (1.0 + a + e + i, 1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i)  # four times the squares of w, x, y, z
     rows: tuple[Quaternion, ...] = (
         (squares[0], h - f, c - g, d - b),
         (h - f, squares[1], b + d, c + g),
@@ -99,7 +99,7 @@ def product(A: Rotation, B: Rotation) -> Rotation:
 
 
 def seen_from(frame: Pose, point: Vector) -> Vector:
-    """A point in A, given in B, by the pose X_AB of B."""
+    """Coordinates in B of a point that is given in A; `frame` is the pose X_AB."""
     x, y, z = point
     px, py, pz = frame.p
     return turned_back(frame.R, (x - px, y - py, z - pz))

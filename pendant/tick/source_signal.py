@@ -1,4 +1,4 @@
-"""What a contact detector is fed with: the force on a contact part and its acceleration, from one source (CD-2)."""
+"""Input of a contact detector: the force on a contact part and the part's acceleration, from one source (CD-2)."""
 
 from typing import NamedTuple
 
@@ -24,11 +24,11 @@ class Signal(NamedTuple):
     gx: float = 0.0  # gravity [m/s²]
     gy: float = 0.0
     gz: float = 0.0
-    mass: float = 0.0  # configured, of what the force accelerates [kg]
+    mass: float = 0.0  # configured mass that the force accelerates [kg]
     effective_mass: float = 1.4  # of the arm behind the contact part, at this posture [kg]
-    saturated: float = 0.0  # not 0: the force is at the end of its sensor's range, which says nothing of its size
-    lever: float = 0.0  # over which a measured angular acceleration moves the acceleration to the load's centre [m]
-    sx: float = 0.0  # change within the tick of what that turning adds, known up to a tick and a half late [m/s²]
+    saturated: float = 0.0  # not 0: the force is at the end of its sensor's range, and may be larger
+    lever: float = 0.0  # by which the angular acceleration adds to the acceleration at the load's centre [m]
+    sx: float = 0.0  # change, in the tick, of the acceleration by `lever`; known up to 1.5 ticks late [m/s²]
     sy: float = 0.0
     sz: float = 0.0
     driven: float = 0.0  # in deviations of noise: above 0 the arm moves its load, below 0 the load moves the arm
@@ -39,12 +39,18 @@ SATURATED = Signal._fields.index("saturated")
 
 
 class ContactSignals(msgspec.Struct, frozen=True, gc=False):
-    """One tick of all sources. While nobody looks at them they stay the numbers that they come as, in one array: to copy six in
-    every tick takes as long as to make them.
+    """One tick of all sources. The numbers stay in one array until somebody reads them: to copy six arrays in every tick would
+    take as long as to compute them.
 
-    Of n joints, m causes of each: a row of `Signal` of each source; torques (n,) of contacts behind the sensor [N·m]; the causes
-    (n, m) of what these are wrong by; what friction at rest may hold of them (n,) [N·m]; the deviation (n,) of their changes for
-    other reasons [N·m]; shares (n, m) of the causes that they hold; misfit (n, m), how wrong these shares may be.
+    Layout of the array, for n joints with m causes of error each:
+
+    - a row of `Signal` for each source;
+    - torques (n,) of contacts behind the sensor [N·m];
+    - causes (n, m) of these torques' errors;
+    - torque (n,) that friction at rest may hide [N·m];
+    - deviation (n,) of the torques' changes for other reasons [N·m];
+    - shares (n, m): a torque's error is the sum of its causes times these;
+    - misfit (n, m): possible errors of the shares.
     """
 
     numbers: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))
@@ -55,7 +61,8 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def felt(self) -> NDArray[np.float64]:
-        """Torques of contacts behind the sensor, the causes of their errors, and what friction may hold (n + n m + n,)."""
+        """Torques of contacts behind the sensor, the causes of their errors, and the torques that friction may hide (n + n m +
+        n,)."""
         begin = self._begin
         return self.numbers[begin : begin + self._felt]
 
@@ -67,7 +74,8 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def known(self) -> NDArray[np.float64]:
-        """Shares of the causes that the torques hold, and how wrong these may be (2, n, m)."""
+        """For each torque and cause: the share of the cause in the torque's error, and the possible error of the share (2, n,
+        m)."""
         return self.numbers[self._begin + self._felt + self.joints :].reshape((2, self.joints, -1))
 
     @property
@@ -76,7 +84,8 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def _felt(self) -> int:
-        """The causes are a third of what is left without torques, friction and deviations."""
+        """Size of `felt`. Causes, shares and misfit have equal sizes: a third each of the array without torques, friction and
+        deviations."""
         n = self.joints
         return 2 * n + (self.numbers.size - self._begin - 3 * n) // 3
 

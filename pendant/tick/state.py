@@ -1,6 +1,6 @@
-"""The state of a part: all that it remembers, as values which compare and which no later tick changes.
+"""The state of a part: all that the part remembers, as values that can be compared and that no later tick changes.
 
-It is derived from the fields of the part and of the parts that it holds, so that a new field belongs to it by itself.
+The state is derived from the fields of the part and of the parts that it holds, so it includes a new field without more code.
 """
 
 from collections import deque
@@ -15,18 +15,19 @@ VALUES = (float, int, str, bytes, frozenset, Enum)
 
 
 def state_of(part: object) -> State:
-    """The state of `part` and of every part that it holds or knows, each once. Equal states go on equally.
+    """The state of `part` and of every part that it holds or knows, each once. Parts with equal states behave equally from then
+    on.
 
     A class names in `NOT_STATE` the fields that are left out, and says why.
 
     Raises:
-        TypeError: a field holds what is neither a value nor a part.
+        TypeError: the content of a field is neither a value nor a part.
     """
     return _part(part, {})
 
 
 def _part(part: object, seen: dict[int, int]) -> State:
-    """A part by its class and fields; one that was `seen` before by its number, for parts know each other."""
+    """A part, described by its class and fields; by its number if it was `seen` before, because parts know each other."""
     number = seen.get(id(part))
     if number is not None:
         return (type(part).__name__, number)
@@ -52,7 +53,7 @@ def _frozen(value: object, seen: dict[int, int]) -> object:
     if isinstance(value, np.ndarray):
         return (value.shape, value.tobytes())
     if isinstance(value, type(state_of)) and "<" not in getattr(value, "__qualname__", "<"):
-        return value  # a function of a module, not one that was made on the way
+        return value  # a function of a module, not one that was defined within another
     if type(value).__module__.startswith("pendant."):
         return _part(value, seen)
     raise TypeError(f"{value!r} is neither a value nor a part: hold its values, or name its field in NOT_STATE")

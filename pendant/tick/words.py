@@ -1,4 +1,4 @@
-"""Enumerations of words that are looked up in every tick; what was done to a list, in words."""
+"""Enumerations of words that are looked up in every tick; the changes of a list, in words."""
 
 from collections.abc import Sequence
 from enum import StrEnum
@@ -12,7 +12,7 @@ class Word(StrEnum):
 
 
 class Named(Protocol):
-    """A value with a name of its own in its list."""
+    """A value whose name is unique in its list."""
 
     @property
     def name(self) -> str:
@@ -21,7 +21,7 @@ class Named(Protocol):
 
 
 def difference(before: Sequence[Named], after: Sequence[Named]) -> str:
-    """What was done to a list, in words: by name where it is one of its values."""
+    """The changes of a list, in words. A single changed value is named, several are counted."""
     old, new = ({each.name: each for each in values} for values in (before, after))
     done = {
         "added": [name for name in new if name not in old],
