@@ -67,8 +67,8 @@ def measure_way(way: Way) -> Score:
 
 def follow(way: Way) -> Score:
     """A program goes on without the sensor."""
-    simulation = begin(Case(way.program, 35.0, way.payload, way.factor, "on", way.seed))
-    simulation.supervisor.settings = Settings(joint_control=replace(JointControl(), fed_back=way.fed_back))
+    use = replace(JointControl(), fed_back=way.fed_back)
+    simulation = begin(Case(way.program, 35.0, way.payload, way.factor, "on", way.seed), use)
     run(simulation, BEFORE)
     lose(simulation, way.lost)
     missed, torques = [], []

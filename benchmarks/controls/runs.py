@@ -89,8 +89,8 @@ def steps(name: str, arm: Arm, rng: np.random.Generator) -> tuple[JointMove | Wa
     return (*moves[:2], Wait(duration=0.2), *moves[2:5], Wait(duration=0.2), moves[5]) * 6
 
 
-def begin(case: Case) -> Simulation:
-    """The arm of a case, its program just started."""
+def begin(case: Case, use: JointControl | None = None) -> Simulation:
+    """The arm of a case, its program just started, with the joint control of the case's law or another one."""
     arm = load_arm("ur5e")
     spring, motors = arm.transmissions, arm.motors
     scaled = {name: [case.stiffness * x for x in getattr(spring, name)] for name in ("stiffness", "stiffening")}
@@ -99,7 +99,7 @@ def begin(case: Case) -> Simulation:
     arm = replace(arm, transmissions=replace(spring, **scaled), motors=replace(motors, rotor_inertia=rotor))
     load = FULL_LOAD if case.payload else Load(mass=0.0)
     scenario = Scenario(seed=case.seed, mismatch=case.mismatch, payload_true=load, payload_configured=load)
-    simulation = Simulation(arm, scenario, Settings(joint_control=LAWS[case.law]))
+    simulation = Simulation(arm, scenario, Settings(joint_control=use or LAWS[case.law]))
     controller, friction = simulation.controller, simulation.plant.friction
     controller.feedback = Feedback(arm, simulation.calibration, simulation.dynamics, simulation.tcp, bandwidth=case.bandwidth)
     rng = np.random.default_rng(case.seed)

@@ -106,7 +106,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 def bad_logs(chance: random.Random, data: bytes) -> Iterator[bytes]:
-    """No log, a log that ends before it begins, and a log with other bytes in its first part, which holds what must be there."""
+    """No log, a log that ends before it begins, and a log with other bytes in its header, which must be there."""
     while True:
         kind = chance.randrange(3)
         if kind == 0:
@@ -114,7 +114,7 @@ def bad_logs(chance: random.Random, data: bytes) -> Iterator[bytes]:
         elif kind == 1:
             yield data[: chance.randrange(2000)]
         else:
-            at = chance.randrange(8, 60)
+            at = chance.randrange(8, 30)
             yield data[:at] + bytes(each ^ 0xFF for each in data[at : at + 9]) + data[at + 9 :]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pendant.all_settings import Settings, apply
+from pendant.all_settings import FrictionFrom, Settings, apply
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import JointMove, Program
 from sim.arm.scenario import Scenario
@@ -20,9 +20,16 @@ IDLE = Wishes(NOTHING, (), ())
 HOME = np.array(UR5E.chain.home)
 
 
-def running(wear: float, mismatch: str = "on", speed: float = 0.3, *, helped: bool = True) -> Simulation:
+def running(
+    wear: float,
+    mismatch: str = "on",
+    speed: float = 0.3,
+    *,
+    helped: bool = True,
+    learned_from: FrictionFrom = FrictionFrom.DYNAMICS,
+) -> Simulation:
     """A UR5e that moves to and fro by a program, its friction `wear` times what its file says, and fed forward if `helped`."""
-    settings = apply(Settings(), {"joint_control.friction": helped})
+    settings = apply(Settings(), {"joint_control.friction": helped, "joint_control.friction_from": learned_from.value})
     simulation = Simulation(UR5E, Scenario(seed=1003, mismatch=mismatch), settings)
     simulation.plant.wear(slice(None), wear)
     steps = tuple(JointMove(q=tuple(HOME + sign * 0.35), speed=speed, acceleration=0.5) for sign in (1.0, -1.0) * 12)
@@ -109,8 +116,7 @@ def test_friction_by_the_deflection_is_learned_in_contact_and_by_the_model_where
     """AF-2; with an output encoder lost nothing is made up of the angle that is."""
     learned = []
     for lost in (False, True):
-        simulation = running(1.0, mismatch="on")
-        simulation.supervisor.settings = apply(Settings(), {"joint_control.friction_from": "deflection"})
+        simulation = running(1.0, mismatch="on", learned_from=FrictionFrom.DEFLECTION)
         if lost:
             simulation.tick(Wishes(NOTHING, (), (SensorFault(sensor="output_encoder", outage=True),)))
         push = Wishes(NOTHING, (Push("wrist_1", (0.0, 0.0, 0.0), (0.0, 0.0, -60.0)),), ())
