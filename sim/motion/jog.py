@@ -13,9 +13,9 @@ from pendant.tick.modes import TICK
 from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.moves import MoveRefused, Reference, beyond, turning_points
 from sim.motion.pace import Pace
-from sim.motion.tool_trajectory import BEND, SPACING
+from sim.motion.tool_trajectory import SPACING, bend_of
 from sim.paths.curves import LEVER, NO_WAY, Straight
-from sim.paths.tool_point import Followed, ToolPoint
+from sim.paths.tool_point import Followed, ToolPoint, WalkedWay
 
 Array = NDArray[np.float64]
 
@@ -88,6 +88,7 @@ class JogTrajectory:
     ) -> None:
         self._tool, self._limits, self._pace = tool, limits, pace
         self._joints, self._s, self._rate, self._next = Followed.at(q.copy()), 0.0, 0.0, 1
+        self._walk = WalkedWay([])
         self._why = ""  # it ends before its length
         self.done, self.problem = False, ""
         length = move.length if move.length > 0.0 else math.inf
@@ -146,7 +147,7 @@ class JogTrajectory:
             q = joints.q + step * joints.rate
             self._joints = joints._replace(q=np.minimum(np.maximum(q, self._limits[2][0]), self._limits[2][1]))
         else:
-            self._joints = self._tool.follow(self._line.record, self._s, joints, step)
+            self._joints = self._tool.go_on(self._line.record, self._s, joints, step, s=self._s, walk=self._walk)
         q, along, bend, _, _ = self._joints
         return Reference(q, rate * along, changing * along + rate * rate * bend)
 
@@ -157,7 +158,7 @@ class JogTrajectory:
         found, s, step = [(0.0, self._follow(0.0, self._joints, 0.0))], 0.0, 0.0
         while s < end:
             joints = found[-1][1]
-            step = min(max(min(SPACING, BEND / max(float(np.abs(joints.rate).max()), 1e-9)), NO_WAY), end - s)
+            step = min(max(min(SPACING, bend_of(joints) / max(float(np.abs(joints.rate).max()), 1e-9)), NO_WAY), end - s)
             ahead = self._follow(s + step, joints, step)
             against, good, bad = self._against(ahead), 0.0, step
             way, turned = turning_points(joints, ahead, step)
@@ -178,6 +179,7 @@ class JogTrajectory:
                 break
             s = end if step == end - s else s + step
             found.append((s, ahead))
+        self._walk = WalkedWay(found)
         return _slowing(self._allowed(found if len(found) > 1 else 2 * found, acceleration))
 
     def _follow(self, s: float, before: Followed, step: float) -> Followed:

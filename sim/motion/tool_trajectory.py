@@ -14,13 +14,14 @@ from sim.motion.moves import MoveRefused, Reference, Strength, check_range, turn
 from sim.motion.planned import JERK_TIME, slower
 from sim.paths.curves import LEVER, NO_WAY, Circle, Path, straight_to
 from sim.paths.timing_law import HAIR, REST, Limits, TimingLaw, TooShort
-from sim.paths.tool_point import Followed, ToolPoint
+from sim.paths.tool_point import Followed, ToolPoint, WalkedWay
 from sim.paths.way_following import SPATIAL
 
 Array = NDArray[np.float64]
 
 SPACING = 0.01  # between the places of a path that are looked at beforehand, at most [m]
 BEND = 0.03  # by which a joint goes between them, at most: less than across a singularity [rad]
+FREE_BEND = 0.01  # the same where a pose leaves a joint free: from place to place its speed changes by the square of this [rad]
 FEWEST = 4  # of them on a piece, at least
 BENDS = 0.5  # share of the joints' accelerations that a path's own acceleration leaves for its bends, where they need it
 FASTEST_LINE = (3.0, 50.0)  # speed and acceleration that a line with a time of its own is planned with [m/s, m/s²]
@@ -32,10 +33,6 @@ class ToolTrajectory:
     Joint angles are those that have the tool on the path; speeds and accelerations are theirs. Beforehand the path is walked
     through once: a joint that would exceed its speed, its acceleration or its torque slows the whole motion down; a path through
     a singularity or out of reach is refused.
-
-    With more than six joints the tool's pose leaves one free, and the joint angles of a place depend on the places before it.
-    Those are the ones of that walk then, so that the angles follow from the place alone, and the motion ends where it was planned
-    to end.
 
     Args:
         q: joint angles at the begin of the path (n,) [rad].
@@ -65,8 +62,7 @@ class ToolTrajectory:
         self._most = Limits(1.0, 1.0, 1.0)
         self._path, self._law = path, TimingLaw(0.0, self._most)
         self._joints, self._place, self.goal = Followed.at(q.copy()), REST, q.copy()
-        self._walk: list[tuple[float, Followed]] = []
-        self._passed = 0  # place of the walk, the last before the tool
+        self._walk = WalkedWay([])
         self._time, self._rate = 0.0, 1.0
         self.done = self.slowing = path.length < NO_WAY
 
@@ -98,7 +94,7 @@ class ToolTrajectory:
             most = most.slower(slower(law.duration, time, self._what))
             law = TimingLaw(path.length, most, begin)
         self._path, self._law, self._most, self._time, self.goal = path, law, most, 0.0, places[-1][1].q
-        self._walk, self._passed = places, 0
+        self._walk = WalkedWay(places)
 
     @property
     def remaining(self) -> float:
@@ -113,21 +109,13 @@ class ToolTrajectory:
         self.done = self._time >= self._law.duration
         place = s, v, a = self._law.at(self._time)
         part = self._path.part(s)
-        last, before = self._place.s, self._joints
-        if self.goal.size > SPATIAL:
-            last, before = self._before(s)
-        joints = self._tool.follow(part.piece.record, part.first + s - part.begin, before, s - last)
+        at, step = part.first + s - part.begin, s - self._place.s
+        joints = self._tool.go_on(part.piece.record, at, self._joints, step, s=s, walk=self._walk)
         self._joints, self._place, self.slowing = joints, place, self.done or a < 0.0
         if rate != 1.0 or self._rate != 1.0:
             a = rate * rate * a + (rate - self._rate) / TICK * v
             v, self._rate = rate * v, rate
         return Reference(joints.q, v * joints.rate, a * joints.rate + v * v * joints.bend)
-
-    def _before(self, s: float) -> tuple[float, Followed]:
-        """The last place of the walk before one that is `s` along the path [m], and joint angles there."""
-        while self._passed + 1 < len(self._walk) and self._walk[self._passed + 1][0] <= s:
-            self._passed += 1
-        return self._walk[self._passed]
 
     def _walked(self, path: Path) -> Iterator[tuple[float, Followed]]:
         """Places of a path from here to its end, and joint angles there.
@@ -150,7 +138,7 @@ class ToolTrajectory:
                 yield place, joints
                 if place == end:
                     break
-                step = max(min(spacing, BEND / max(float(np.abs(joints.rate).max()), 1e-9)), NO_WAY)
+                step = max(min(spacing, bend_of(joints) / max(float(np.abs(joints.rate).max()), 1e-9)), NO_WAY)
                 last = place + 1.01 * step >= end
                 step = end - place if last else step
                 place = end if last else place + step
@@ -175,6 +163,11 @@ class ToolTrajectory:
             left = np.maximum(allowed - along * acceleration, 0.0)
             speed = min(speed, math.sqrt(float((left / np.maximum(across, 1e-9)).min())))
         return Limits(speed, acceleration, acceleration / JERK_TIME)
+
+
+def bend_of(joints: Followed) -> float:
+    """By how much a joint goes at most from one place of a walk to the next [rad]."""
+    return FREE_BEND if joints.q.size > SPATIAL else BEND
 
 
 def planned_line(

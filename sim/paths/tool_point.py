@@ -1,5 +1,6 @@
 """The tool centre point of an arm: where it is, how it goes, and which joint angles follow a way of it."""
 
+from bisect import bisect_right
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record
 from sim.paths.tool_kinematics import aligned, factored, inverted, look, tool_record
-from sim.paths.way_following import follow
+from sim.paths.way_following import SPATIAL, add_unseen, follow
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -30,6 +31,21 @@ class Followed(NamedTuple):
     def at(cls, q: Array) -> "Followed":
         """Joint angles from which any place is looked for."""
         return cls(q, np.zeros_like(q), np.zeros_like(q))
+
+
+class WalkedWay:
+    """Places of a way, in their order, with the joint angles that were found at each of them from the one before.
+
+    Args:
+        places: how far along the way [m], and joint angles.
+    """
+
+    def __init__(self, places: list[tuple[float, Followed]]) -> None:
+        self._places, self._s = places, [s for s, _ in places]
+
+    def before(self, s: float) -> tuple[float, Followed]:
+        """The last place that is at most `s` along the way [m]."""
+        return self._places[max(bisect_right(self._s, s) - 1, 0)]
 
 
 class ToolPoint:
@@ -99,6 +115,27 @@ class ToolPoint:
         off, singular = follow(self._models, (piece, s), (step, before.q, before.rate, before.bend), found)
         return Followed(found[0], found[1], found[2], off < FOUND, singular)
 
+    def go_on(self, piece: Record, at: float, before: Followed, step: float, *, s: float, walk: WalkedWay) -> Followed:
+        """Joint angles with the tool at the next place of a piece that was walked along before.
+
+        With more than six joints the tool's pose leaves one free, and the joint angles of a place depend on those before it. The
+        angles of the walk count then, so that they follow from the place alone.
+
+        Args:
+            piece: as of `follow`.
+            at: the place on it [m].
+            before: joint angles at the place that the tool comes from.
+            step: from there [m].
+            s: the place on the whole way [m].
+            walk: along the whole way.
+        """
+        if self._jacobian.shape[1] <= SPATIAL:
+            return self.follow(piece, at, before, step)
+        behind, before = walk.before(s)
+        joints = self.follow(piece, at, before, s - behind)
+        _add_unseen(self._models, before.rate + (s - behind) * before.bend, joints.rate)
+        return joints
+
 
 @kernel
 def _speeds(models, q, wanted, qd) -> None:
@@ -109,6 +146,11 @@ def _speeds(models, q, wanted, qd) -> None:
         own.twist[k], own.twist[3 + k] = v[k], w[k]
     factored(own)
     inverted(own, qd)
+
+
+@kernel
+def _add_unseen(models, free, rate) -> None:
+    add_unseen(models[1][0], free, rate)
 
 
 @kernel

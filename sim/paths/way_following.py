@@ -133,7 +133,7 @@ def _bias(own, rate, bend) -> None:
         last = here
     inverted(own, bend)
     if n > SPATIAL:
-        _add_unseen(own, free, bend)
+        add_unseen(own, free, bend)
 
 
 @kernel
@@ -149,8 +149,8 @@ def _shortest(own, rate, y) -> None:
 
 
 @kernel
-def _add_unseen(own, free, bend) -> None:
-    """Add to `bend` (n,) what of `free` (n,) moves no tool."""
+def add_unseen(own, free, change) -> None:
+    """Add to `change` (n,) what of `free` (n,) moves no tool; J is that of the place found last."""
     jacobian, twist = own.jacobian, own.twist
     seen = np.empty(free.size)
     for r in range(SPATIAL):
@@ -159,7 +159,7 @@ def _add_unseen(own, free, bend) -> None:
             twist[r] += jacobian[r, i] * free[i]
     inverted(own, seen)
     for i in range(free.size):
-        bend[i] += free[i] - seen[i]
+        change[i] += free[i] - seen[i]
 
 
 @kernel

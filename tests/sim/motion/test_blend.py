@@ -186,4 +186,4 @@ def test_seven_joints_end_where_it_was_planned_however_fast_they_went(rate: floa
     np.testing.assert_allclose(rows[-1].q, motion.goal, atol=1e-9)
     way = np.diff([row.q for row in rows], axis=0)
     mean = 0.5 * TICK * np.add([row.qd for row in rows[1:]], [row.qd for row in rows[:-1]])
-    np.testing.assert_allclose(way, mean, atol=2e-6)
+    np.testing.assert_allclose(way, mean, atol=2e-7)
