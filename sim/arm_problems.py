@@ -165,7 +165,7 @@ def _curves(arm: Arm) -> list[Problem]:
             found.append((f"frictions.breakaway[{k}]", f.breakaway[k], f"expected at least 0.9 times {f.torque[k][0]:g}"))
         if t.hysteresis_stiffness[k] > 0 and t.hysteresis_yield[k] == 0:
             found.append((f"transmissions.hysteresis_yield[{k}]", 0.0, "expected > 0 where hysteresis_stiffness is"))
-        full = arm.motors.gear[k] * arm.motors.torque_constant[k] * arm.motors.current[k]
+        full = arm.motors.torque_per_current[k] * arm.motors.current[k]
         if full < arm.limits.torque[k]:
             allowed = f"expected a current for the torque limit {arm.limits.torque[k]:g} N·m, this gives {full:.3g}"
             found.append((f"motors.current[{k}]", arm.motors.current[k], allowed))

@@ -121,7 +121,7 @@ class Simulation:
             meter=self.controller.references.meter,
             following=following_limit(arm),
         )
-        self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
+        self._motor = np.array(arm.motors.torque_per_current)
         self._controlled = Controlled(self.dynamics.gravity(self.plant.q) / self._motor, NO_MOTION, None)
         self.sensors.read(self.plant, self._controlled.current)  # as it comes one tick late: what the first tick will know
         self.gripper = self.plant.gripper  # a device of the arm: its object-detected input is a measurement

@@ -46,6 +46,8 @@ def test_the_readme_example_tests_pass(robot: Robot) -> None:
     names: dict[str, Any] = {}
     for example in examples:
         exec(example, names)
+    tests = {name for name in names if name.startswith("test_")}
+    assert tests == {"test_the_arm_holds", "test_the_program_moves_the_arm_and_sets_its_output"}, "each is run here"
     names["test_the_arm_holds"]()
     names["test_the_program_moves_the_arm_and_sets_its_output"](robot)
 

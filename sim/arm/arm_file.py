@@ -119,6 +119,11 @@ class Motors(Sourced, frozen=True):
     rotor_inertia: list[RotorInertia]  # reflected to the output [kg·m²]
     ripple: list[NotNegative]  # torque ripple amplitude at the output [N·m], at twice the wave generator's turn
 
+    @property
+    def torque_per_current(self) -> list[float]:
+        """Torque of each motor for its current, after the gear [N·m/A]."""
+        return [gear * constant for gear, constant in zip(self.gear, self.torque_constant, strict=True)]
+
 
 class Transmissions(Sourced, frozen=True):
     """Transmission of each joint: tau_J(x) = stiffness·x + stiffening·x³ + damping·x' + hysteresis, x = theta - q."""

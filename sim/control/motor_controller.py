@@ -24,7 +24,7 @@ class MotorController:
 
     def __init__(self, arm: Arm, constants: JointConstants) -> None:
         motors = arm.motors
-        per_torque = 1.0 / (np.array(motors.torque_constant) * np.array(motors.gear) * constants.motor_constant)
+        per_torque = 1.0 / (np.array(motors.torque_per_current) * constants.motor_constant)
         # The output's torque limit, with room for the friction that the motor has to overcome as well.
         friction = np.array([row[-1] for row in arm.frictions.torque])
         largest = np.minimum(np.array(motors.current) / per_torque, np.array(arm.limits.torque) + friction)

@@ -59,7 +59,7 @@ class Estimator:
         self._dynamics, self._tcp = dynamics, tcp
         stiffness = np.array(spring.stiffness) * constants.stiffness
         slip_stiffness = np.array(spring.hysteresis_stiffness) * constants.stiffness
-        torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * constants.motor_constant
+        torque_constant = np.array(motors.torque_per_current) * constants.motor_constant
         stiffening = np.array(spring.stiffening) * constants.stiffness
         self._record = joint_record(n)
         own = self._own = self._record[0]

@@ -59,9 +59,8 @@ class Plant:
         own["slip_stiffness"] = values.hysteresis_stiffness
         own["at_q"], own["at_theta"], own["dof_q"], own["dof_theta"] = self._at_q, self._at_theta, self._dof_q, self._dof_theta
         own["spring"], own["slip"], own["slip_state"] = self._springs, self._slips, self._slip_state
-        motors = arm.motors
         # A brake that its own motor could turn would not hold what the motor held.
-        self._brakes, self._braked = np.array(motors.current) * motors.torque_constant * motors.gear, False
+        self._brakes, self._braked = np.array(arm.motors.torque_per_current) * arm.motors.current, False
         self._held, self._heat = own["held"], own["heat"]
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._rubs_outside = np.array([model.actuator(f"friction/q/{name}").id for name in joints])

@@ -39,7 +39,7 @@ class MeasuredFields:
         """Write the tick done last."""
         if simulation is not self._simulation:
             self._simulation, motors = simulation, simulation.arm.motors
-            self._torque = np.array(motors.gear) * np.array(motors.torque_constant)
+            self._torque = np.array(motors.torque_per_current)
             self._rotor, self._most_current = np.array(motors.rotor_inertia), np.array(motors.current)
             self._record.put("target_gravity", simulation.estimate.g_B)
         fitting = decision.estimator.fitting
